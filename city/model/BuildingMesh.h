@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "city/geometry/Mesh.h"
+
+namespace city {
+
+/// A polygon with holes, world metres; rings are not closed (the last point is not the first), any orientation.
+struct Footprint {
+    std::vector<glm::vec2> outer;
+    std::vector<std::vector<glm::vec2>> holes;
+};
+
+enum class RoofShape : std::uint8_t { flat, gabled, hipped, pyramidal };
+
+/// A prismatic building or part of one.
+struct BuildingShape {
+    Footprint footprint;
+    float base = 0;              ///< metres, world z of the walls' foot (above ground for parts with min_height)
+    float eaves = 12;            ///< world z where the walls end
+    float ridge = 12;            ///< world z of the roof's top; equal to eaves for flat roofs
+    RoofShape roof = RoofShape::flat;
+    float storeyHeight = 3.2f;   ///< metres; facade texture coordinates count storeys upwards
+    float bayWidth = 3.0f;       ///< metres; rounded per wall so that whole bays fit
+    float groundFloorHeight = 0; ///< metres of wall above base that take `groundFloorMaterial`; 0: none
+    std::uint32_t wallMaterial = 0;
+    std::uint32_t groundFloorMaterial = 0;
+    std::uint32_t roofMaterial = 0;
+};
+
+enum class BuildStatus : std::uint8_t {
+    built,
+    repaired,    ///< the footprint crossed itself and was mended
+    degenerate,  ///< fewer than three distinct corners, no area, or a non-finite number: nothing added
+};
+
+/// Appends walls (outward normals; courtyards' walls face the court) and roof. Gabled and hipped roofs are built on
+/// quadrilateral-like footprints and fall back to flat elsewhere. No floor polygon.
+BuildStatus appendBuilding(const BuildingShape& shape, Mesh& mesh);
+
+/// Triangles of a footprint, as corner triples, counter-clockwise seen from above; empty when degenerate.
+std::vector<glm::vec2> triangulate(const Footprint& footprint);
+
+}  // namespace city
