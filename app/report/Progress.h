@@ -6,8 +6,8 @@
 
 namespace app {
 
-/// A progress bar on stderr: drawn only on a terminal and only once a second has passed; silent in quiet mode. The destructor
-/// ends the line.
+/// A progress bar on stderr: drawn only on a terminal and only once a second has passed; silent in quiet
+/// mode. The destructor ends the line.
 class Progress {
   public:
     Progress(std::string label, std::uint64_t total, bool quiet = false);
@@ -29,8 +29,8 @@ class Progress {
     std::chrono::steady_clock::time_point lastDraw_;
 };
 
-/// True once SIGINT or SIGTERM came; commands look at it between units of work and finish what they have. A second signal ends
-/// the program at once.
+/// True once SIGINT or SIGTERM came; commands look at it between units of work and finish what they have. A
+/// second signal ends the program at once.
 bool interrupted();
 /// Installs the handlers behind `interrupted`. Call once, early in main.
 void watchForInterrupt();

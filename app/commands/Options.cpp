@@ -1,0 +1,280 @@
+#include "app/commands/Options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+namespace app {
+
+namespace {
+
+/// CLI11's own Range lets NaN pass.
+CLI::Validator between(double low, double high, const std::string& unit) {
+    const auto number = [](double x) {
+        std::ostringstream text;
+        text << x;
+        return text.str();
+    };
+    const std::string range = number(low) + " to " + number(high) + (unit.empty() ? "" : " " + unit);
+    return CLI::Validator(
+        [low, high, range](const std::string& text) -> std::string {
+            double value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+                return "'" + text + "' is not a finite number";
+            if (value < low || value > high) return text + " is outside " + range;
+            return {};
+        },
+        range);
+}
+
+CLI::Validator wholeBetween(std::uint64_t low, std::uint64_t high) {
+    const std::string range = std::to_string(low) + " to " + std::to_string(high);
+    return CLI::Validator(
+        [low, high, range](const std::string& text) -> std::string {
+            std::uint64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
+                return "'" + text + "' is not a whole number from " + range;
+            return {};
+        },
+        "");
+}
+
+template <typename Enum, std::size_t count>
+void addNamed(CLI::App& parser, const std::string& option, Enum& target,
+              const std::array<std::string_view, count>& names, const std::string& description) {
+    std::string list;
+    for (std::string_view name : names) list += (list.empty() ? "" : " ") + std::string(name);
+    parser
+        .add_option_function<std::string>(
+            option,
+            [&target, names, option, list](const std::string& text) {
+                const auto value = fromName<Enum>(names, text);
+                if (!value) {
+                    const std::vector<std::string> all(names.begin(), names.end());
+                    const auto meant = suggestion(text, all);
+                    throw CLI::ValidationError(option,
+                                               "there is no '" + text + "'; choose from: " + list +
+                                                   (meant ? " (did you mean '" + *meant + "'?)" : ""));
+                }
+                target = *value;
+            },
+            description + ": " + list)
+        ->type_name("NAME");
+}
+
+void parseResolution(const std::string& text, glm::ivec2& target) {
+    const char* end = text.data() + text.size();
+    const auto [x, error] = std::from_chars(text.data(), end, target.x);
+    bool good = error == std::errc() && x != end && *x == 'x';
+    if (good) {
+        const auto [rest, error2] = std::from_chars(x + 1, end, target.y);
+        good = error2 == std::errc() && rest == end;
+    }
+    if (!good || target.x < 16 || target.y < 16 || target.x > 16384 || target.y > 16384)
+        throw CLI::ValidationError(
+            "--resolution", "'" + text + "' is not WIDTHxHEIGHT with both from 16 to 16384, like 1280x720");
+}
+
+void addTraffic(CLI::App& parser, Options& o, bool many) {
+    auto* cars =
+        parser.add_option("--cars", o.cars, many ? "numbers of cars, separated by commas" : "number of cars")
+            ->delimiter(',')
+            ->type_name("N")
+            ->check(wholeBetween(0, 100000));
+    if (!many) cars->expected(1);
+}
+
+void addGroups(CLI::App& parser, Options& o, const Command& command) {
+    const unsigned groups = command.groups;
+    if (!command.benches.empty()) parser.add_option("NAME", o.bench, "the measurement")->required();
+    if (groups & cityOptions) {
+        parser.add_option("CITY", o.city,
+                          groups & cityIsOptional
+                              ? "boulevard, paper, or a file (.osm, .osm.pbf, ...)"
+                              : "boulevard (default), paper, or a file (.osm, .osm.pbf, ...)");
+        parser.add_option("--seed", o.seed, "of everything that is drawn at random")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(0, 0xffffffffffffffffull));
+        parser
+            .add_option("--size", o.size,
+                        "side of a generated city, or of the square that is cut from a file")
+            ->type_name("METRES")
+            ->check(between(100, 20000, "metres"));
+    }
+    if (groups & trafficOptions) {
+        addTraffic(parser, o, !command.benches.empty());
+        const std::string length = "length to which the body is scaled";
+        if (!(groups & exportOptions))
+            parser.add_option("--car", o.car, "body for all cars: a binary glTF file")
+                ->type_name("FILE.glb")
+                ->check(CLI::ExistingFile);
+        else
+            parser.add_option("--body", o.car, "body for all cars: a binary glTF file")
+                ->type_name("FILE.glb")
+                ->check(CLI::ExistingFile);
+        parser.add_option("--car-length", o.carLength, length)
+            ->type_name("METRES")
+            ->capture_default_str()
+            ->check(between(0.5, 60, "metres"));
+    }
+    if (groups & reflectionOptions) {
+        addNamed(parser, "--method", o.method, reflectionMethodNames,
+                 "how vehicles get their reflections (default mem)");
+        addNamed(parser, "--mem", o.mem, memVariantNames, "form of the method mem (default ours)");
+        addNamed(parser, "--quality", o.quality, qualityNames,
+                 "detail of drawing and reflections (default medium)");
+        parser.add_option("--cell", o.cell, "side of a heightfield cell")
+            ->type_name("METRES")
+            ->capture_default_str()
+            ->check(between(0.1, 50, "metres"));
+    }
+    if (groups & pictureOptions) {
+        parser.add_option("--time", o.hour, "hour of the day, 0 to 24")
+            ->type_name("HOUR")
+            ->capture_default_str()
+            ->check(between(0, 24, "hours"));
+        parser
+            .add_option_function<std::string>(
+                "--resolution", [&o](const std::string& text) { parseResolution(text, o.resolution); },
+                "of pictures (default 1280x720)")
+            ->type_name("WxH");
+    }
+    if (groups & durationOptions) {
+        auto* seconds = parser.add_option("--seconds", o.seconds, "length of the drive")
+                            ->type_name("S")
+                            ->check(between(0.01, 86400, "seconds"));
+        parser.add_option("--frames", o.frames, "length of the drive in frames")
+            ->type_name("N")
+            ->check(wholeBetween(1, 10000000))
+            ->excludes(seconds);
+        parser.add_option("--fps", o.fps, "frames per second of the drive")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(1, 240));
+    }
+    if (groups & outOptions)
+        parser.add_option("--out", o.out, "folder for pictures and video")
+            ->type_name("DIR")
+            ->capture_default_str();
+    if (groups & jsonOptions)
+        parser.add_option("--json", o.json, "write the results to this file")->type_name("FILE");
+    if (groups & displayOptions)
+        parser.add_flag("--offscreen", o.offscreen, "no window, even where there is a display");
+    if (groups & exportOptions) {
+        parser.add_option("--city", o.exportCity, "write the city to this file")->type_name("FILE.glb");
+        parser.add_option("--car", o.exportCar, "write the first vehicle model to this file")
+            ->type_name("FILE.glb");
+        parser.add_option("--drive", o.exportDrive, "write camera and cars, frame by frame, to this file")
+            ->type_name("FILE.json");
+    }
+    parser.add_flag("-q,--quiet", o.quiet, "no progress, no remarks: results, warnings and errors alone");
+}
+
+/// Names that a command line may contain, for suggestions: "--cars", ...
+std::vector<std::string> optionNames(const CLI::App& parser) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : parser.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+int complain(const Command& command, const std::string& message,
+             const std::optional<std::string>& meant = std::nullopt) {
+    std::cerr << "mirrorstreet " << command.name << ": " << message;
+    if (meant) std::cerr << "; did you mean '" << *meant << "'?";
+    std::cerr << "\nSee mirrorstreet " << command.name << " --help.\n";
+    return exitUsage;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> Options::frameCount() const {
+    if (frames) return frames;
+    if (seconds) return static_cast<std::uint32_t>(std::max(1.0, std::round(*seconds * fps)));
+    return std::nullopt;
+}
+
+ParseOutcome parseOptions(const Command& command, std::span<const std::string> arguments) {
+    Options options;
+    if (command.groups & cityIsOptional) options.city.clear();
+    CLI::App parser(command.summary, "mirrorstreet " + command.name);
+    parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    addGroups(parser, options, command);
+    if (!command.benches.empty()) {
+        std::string list = "Measurements:\n";
+        for (const BenchName& bench : command.benches)
+            list += "  " + bench.name +
+                    std::string(bench.name.size() < 12 ? 12 - bench.name.size() : 1, ' ') + bench.summary +
+                    "\n";
+        parser.footer(list);
+    }
+    try {
+        parser.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        std::cout << parser.help();
+        return exitOk;
+    } catch (const CLI::ExtrasError&) {
+        const std::vector<std::string> left = parser.remaining();
+        const std::string word = left.empty() ? "" : left.front().substr(0, left.front().find('='));
+        const std::string what = word.starts_with('-') ? "unknown option '" : "unexpected argument '";
+        return complain(command, what + word + "'", suggestion(word, optionNames(parser)));
+    } catch (const CLI::ParseError& error) {
+        return complain(command, error.what());
+    }
+    if (!command.benches.empty()) {
+        std::vector<std::string> names;
+        for (const BenchName& bench : command.benches) names.push_back(bench.name);
+        if (std::find(names.begin(), names.end(), options.bench) == names.end())
+            return complain(command, "there is no measurement '" + options.bench + "'",
+                            suggestion(options.bench, names));
+    }
+    if ((command.groups & cityOptions) && !options.city.empty() && options.city != "boulevard" &&
+        options.city != "paper") {
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(options.city, ignored)) {
+            const std::vector<std::string> builtIn{"boulevard", "paper"};
+            return complain(
+                command,
+                "there is no city and no file named '" + options.city + "' (built in: boulevard, paper)",
+                suggestion(options.city, builtIn));
+        }
+    }
+    return options;
+}
+
+std::optional<std::string> suggestion(const std::string& word, std::span<const std::string> candidates) {
+    std::optional<std::string> best;
+    std::size_t bestDistance = 0;
+    for (const std::string& candidate : candidates) {
+        // Edit distance with swaps of neighbours (Damerau): d[i][j] between the first i and the first j
+        // letters.
+        std::vector<std::vector<std::size_t>> d(word.size() + 1,
+                                                std::vector<std::size_t>(candidate.size() + 1));
+        for (std::size_t i = 0; i <= word.size(); ++i)
+            for (std::size_t j = 0; j <= candidate.size(); ++j) {
+                if (i == 0 || j == 0) {
+                    d[i][j] = i + j;
+                    continue;
+                }
+                const std::size_t differs = word[i - 1] == candidate[j - 1] ? 0 : 1;
+                d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + differs});
+                if (i > 1 && j > 1 && word[i - 1] == candidate[j - 2] && word[i - 2] == candidate[j - 1])
+                    d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+            }
+        const std::size_t distance = d[word.size()][candidate.size()];
+        if (!best || distance < bestDistance) {
+            best = candidate;
+            bestDistance = distance;
+        }
+    }
+    if (!best || 3 * bestDistance > std::max(word.size(), best->size())) return std::nullopt;
+    return best;
+}
+
+}  // namespace app

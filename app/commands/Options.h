@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/frame/ReflectionMethod.h"
+
+namespace app {
+
+/// What the command line asked for: plain data, every number finite and within the range that its --help
+/// names.
+struct Options {
+    std::string bench;               ///< name of the measurement, for `bench`
+    std::string city = "boulevard";  ///< built-in name or file; empty where the command line named none and
+                                     ///< the command allows it
+    std::uint64_t seed = 1;
+    std::optional<double> size;                ///< metres, side of a generated city or clip square of a file
+    std::vector<std::uint32_t> cars{60};       ///< `bench` takes several numbers, every other command one
+    std::optional<std::filesystem::path> car;  ///< GLB that replaces the built-in cars
+    double carLength = 4.5;                    ///< metres
+    ReflectionMethod method = ReflectionMethod::mem;
+    MemVariant mem = MemVariant::ours;
+    Quality quality = Quality::medium;
+    double cell = 1;                   ///< metres, side of a heightfield cell
+    double hour = 15;                  ///< local solar time
+    glm::ivec2 resolution{1280, 720};  ///< pixels
+    std::filesystem::path out = "out";
+    std::optional<std::filesystem::path> json;
+    std::optional<double> seconds;
+    std::optional<std::uint32_t> frames;
+    std::uint32_t fps = 30;
+    bool offscreen = false;
+    bool quiet = false;
+    std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
+
+    /// Frames that --frames or --seconds ask for; nothing where neither was given.
+    std::optional<std::uint32_t> frameCount() const;
+};
+
+/// Groups of options; a command takes several.
+enum OptionGroup : unsigned {
+    cityOptions = 1u << 0,        ///< CITY --seed --size
+    trafficOptions = 1u << 1,     ///< --cars --car --car-length
+    reflectionOptions = 1u << 2,  ///< --method --mem --quality --cell
+    pictureOptions = 1u << 3,     ///< --time --resolution
+    outOptions = 1u << 4,         ///< --out
+    jsonOptions = 1u << 5,        ///< --json
+    durationOptions = 1u << 6,    ///< --seconds --frames --fps
+    displayOptions = 1u << 7,     ///< --offscreen
+    exportOptions = 1u << 8,      ///< --city --car --drive as files to write
+    cityIsOptional = 1u << 9,     ///< no CITY means none, not the default
+};
+
+/// A name that may follow `bench`.
+struct BenchName {
+    std::string name;
+    std::string summary;
+};
+
+/// One command of the program.
+struct Command {
+    std::string name;
+    std::string summary;
+    unsigned groups = 0;
+    std::vector<BenchName> benches;          ///< not empty: the first argument is one of these
+    std::function<int(const Options&)> run;  ///< returns the exit code
+};
+
+/// Either the options, or the exit code with which the program should end at once (after --help, or after a
+/// usage error that has been explained on stderr).
+using ParseOutcome = std::variant<Options, int>;
+
+inline constexpr int exitOk = 0;
+inline constexpr int exitFailed = 1;
+inline constexpr int exitUsage = 2;
+
+/// Parses the arguments behind the command's name. Help goes to stdout, complaints to stderr.
+ParseOutcome parseOptions(const Command& command, std::span<const std::string> arguments);
+
+/// The candidate nearest to a misspelt word, if any is near enough to be meant (at most a third of its
+/// letters differ).
+std::optional<std::string> suggestion(const std::string& word, std::span<const std::string> candidates);
+
+}  // namespace app

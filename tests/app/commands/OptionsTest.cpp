@@ -1,0 +1,181 @@
+#include "app/commands/Options.h"
+
+#include <gtest/gtest.h>
+
+#include "app/commands/Commands.h"
+
+namespace app {
+namespace {
+
+Command tour() {
+    return {.name = "tour",
+            .summary = "test",
+            .groups = cityOptions | trafficOptions | reflectionOptions | pictureOptions | outOptions |
+                      jsonOptions | durationOptions | displayOptions,
+            .benches = {},
+            .run = [](const Options&) { return exitOk; }};
+}
+
+ParseOutcome parse(const Command& command, std::vector<std::string> arguments) {
+    return parseOptions(command, arguments);
+}
+
+/// The exit code and what was said on stderr.
+std::pair<int, std::string> refused(const Command& command, std::vector<std::string> arguments) {
+    testing::internal::CaptureStderr();
+    const ParseOutcome outcome = parse(command, std::move(arguments));
+    const std::string said = testing::internal::GetCapturedStderr();
+    const int* code = std::get_if<int>(&outcome);
+    return {code ? *code : -1, said};
+}
+
+TEST(OptionsTest, defaultsAreThoseOfTheHelp) {
+    const ParseOutcome outcome = parse(tour(), {});
+    const auto& o = std::get<Options>(outcome);
+    EXPECT_EQ(o.city, "boulevard");
+    EXPECT_EQ(o.method, ReflectionMethod::mem);
+    EXPECT_EQ(o.mem, MemVariant::ours);
+    EXPECT_EQ(o.resolution, glm::ivec2(1280, 720));
+    EXPECT_EQ(o.cars, std::vector<std::uint32_t>{60});
+    EXPECT_FALSE(o.frameCount());
+}
+
+TEST(OptionsTest, everyOptionReachesItsField) {
+    const ParseOutcome outcome = parse(tour(), {"paper",
+                                                "--seed",
+                                                "18446744073709551615",
+                                                "--size",
+                                                "400",
+                                                "--cars",
+                                                "7",
+                                                "--method",
+                                                "static",
+                                                "--mem",
+                                                "paper",
+                                                "--quality",
+                                                "high",
+                                                "--time",
+                                                "8.5",
+                                                "--resolution",
+                                                "640x360",
+                                                "--out",
+                                                "x",
+                                                "--json",
+                                                "y.json",
+                                                "--quiet",
+                                                "--cell",
+                                                "0.5",
+                                                "--seconds",
+                                                "2",
+                                                "--fps",
+                                                "25",
+                                                "--offscreen"});
+    const auto& o = std::get<Options>(outcome);
+    EXPECT_EQ(o.city, "paper");
+    EXPECT_EQ(o.seed, 18446744073709551615ull);
+    EXPECT_EQ(o.size, 400.0);
+    EXPECT_EQ(o.cars, std::vector<std::uint32_t>{7});
+    EXPECT_EQ(o.method, ReflectionMethod::fixed);
+    EXPECT_EQ(o.mem, MemVariant::paper);
+    EXPECT_EQ(o.quality, Quality::high);
+    EXPECT_EQ(o.hour, 8.5);
+    EXPECT_EQ(o.resolution, glm::ivec2(640, 360));
+    EXPECT_EQ(o.out, "x");
+    EXPECT_EQ(o.json, std::filesystem::path("y.json"));
+    EXPECT_TRUE(o.quiet);
+    EXPECT_EQ(o.cell, 0.5);
+    EXPECT_EQ(o.frameCount(), 50u);
+    EXPECT_TRUE(o.offscreen);
+}
+
+TEST(OptionsTest, absurdNumbersAreRefusedAndNamed) {
+    const std::vector<std::pair<std::string, std::vector<std::string>>> absurd{
+        {"--size", {"nan", "inf", "-5", "0", "1e9", "12m", ""}},
+        {"--seed", {"-1", "1.5", "18446744073709551616", "x"}},
+        {"--cars", {"-1", "100001", "3.5", "two"}},
+        {"--time", {"25", "-1", "nan"}},
+        {"--cell", {"0", "nan", "-1", "51"}},
+        {"--seconds", {"0", "-1", "inf"}},
+        {"--frames", {"0", "-3"}},
+        {"--fps", {"0", "241"}},
+        {"--resolution", {"1280", "1280x", "x720", "0x0", "15x720", "99999x720", "1280x720x3", "-5x5"}},
+        {"--method", {"memm", ""}},
+        {"--quality", {"ultra"}},
+    };
+    for (const auto& [option, values] : absurd)
+        for (const std::string& value : values) {
+            const auto [code, said] = refused(tour(), {option + "=" + value});
+            EXPECT_EQ(code, exitUsage) << option << "=" << value;
+            EXPECT_NE(said.find(option), std::string::npos) << said;
+        }
+}
+
+TEST(OptionsTest, misspeltWordsAreNamedWithTheOneThatWasMeant) {
+    EXPECT_NE(refused(tour(), {"--resolutoin", "3x3"}).second.find("did you mean '--resolution'"),
+              std::string::npos);
+    EXPECT_NE(refused(tour(), {"--metod=mem"}).second.find("did you mean '--method'"), std::string::npos);
+    EXPECT_NE(refused(tour(), {"--method", "rerendr"}).second.find("did you mean 'rerender'"),
+              std::string::npos);
+    EXPECT_NE(refused(tour(), {"boulevrad"}).second.find("did you mean 'boulevard'"), std::string::npos);
+    const auto [code, said] = refused(tour(), {"--zzzzzzz"});
+    EXPECT_EQ(code, exitUsage);
+    EXPECT_EQ(said.find("did you mean"), std::string::npos) << said;
+}
+
+TEST(OptionsTest, aCityThatDoesNotExistIsBadUsage) {
+    const auto [code, said] = refused(tour(), {"/nowhere/city.osm"});
+    EXPECT_EQ(code, exitUsage);
+    EXPECT_NE(said.find("/nowhere/city.osm"), std::string::npos);
+}
+
+TEST(OptionsTest, secondsAndFramesExcludeEachOther) {
+    EXPECT_EQ(refused(tour(), {"--seconds", "2", "--frames", "3"}).first, exitUsage);
+}
+
+TEST(OptionsTest, aBenchNeedsAKnownNameAndTakesSeveralNumbersOfCars) {
+    Command bench = tour();
+    bench.name = "bench";
+    bench.benches = {{"cars", "frames"}, {"tracer", "rays"}};
+    EXPECT_EQ(refused(bench, {}).first, exitUsage);
+    EXPECT_NE(refused(bench, {"trace"}).second.find("did you mean 'tracer'"), std::string::npos);
+    const ParseOutcome outcome = parse(bench, {"cars", "paper", "--cars", "10,30,100"});
+    const auto& o = std::get<Options>(outcome);
+    EXPECT_EQ(o.bench, "cars");
+    EXPECT_EQ(o.city, "paper");
+    EXPECT_EQ(o.cars, (std::vector<std::uint32_t>{10, 30, 100}));
+    EXPECT_EQ(refused(tour(), {"--cars", "10,30"}).first, exitUsage);
+}
+
+TEST(ProgramTest, exitCodesTellUsageFromSuccess) {
+    int ran = 0;
+    Command command = tour();
+    command.run = [&ran](const Options& o) {
+        ++ran;
+        return o.quiet ? 7 : exitOk;
+    };
+    const std::vector<Command> commands{command};
+    const auto run = [&](std::vector<std::string> arguments) {
+        testing::internal::CaptureStderr();
+        testing::internal::CaptureStdout();
+        const int code = runProgram(commands, arguments);
+        return std::tuple(code, testing::internal::GetCapturedStdout(),
+                          testing::internal::GetCapturedStderr());
+    };
+    EXPECT_EQ(run({"tour"}), std::tuple(exitOk, std::string(), std::string()));
+    EXPECT_EQ(std::get<0>(run({"tour", "-q"})), 7);
+    EXPECT_EQ(ran, 2);
+    const auto [help, helpOut, helpErr] = run({"tour", "--help"});
+    EXPECT_EQ(help, exitOk);
+    EXPECT_NE(helpOut.find("--resolution"), std::string::npos);
+    EXPECT_TRUE(helpErr.empty());
+    EXPECT_EQ(std::get<0>(run({"--help"})), exitOk);
+    EXPECT_EQ(std::get<0>(run({})), exitUsage);
+    const auto [unknown, unknownOut, unknownErr] = run({"toru"});
+    EXPECT_EQ(unknown, exitUsage);
+    EXPECT_NE(unknownErr.find("did you mean 'tour'"), std::string::npos);
+    EXPECT_TRUE(unknownOut.empty());
+    EXPECT_EQ(ran, 2);
+}
+
+}  // namespace
+}  // namespace app
