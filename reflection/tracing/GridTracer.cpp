@@ -1,0 +1,83 @@
+#include "reflection/tracing/GridTracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "reflection/tracing/ExactWalk.h"
+#include "reflection/tracing/TracedGrid.h"
+
+namespace reflection {
+
+namespace {
+
+double normalisedOrigin(double value) {
+    return std::abs(value) < 0x1p-500 ? 0 : value;
+}
+
+void requireDistinctBorders(double origin, double cellSize, int cells) {
+    if (!(std::abs(origin) <= 1e30))
+        throw std::invalid_argument("a heightfield to be traced must lie within 1e30 m of the origin");
+    double previous = origin;
+    for (int k = 1; k <= cells; ++k) {
+        const double next = origin + static_cast<double>(k) * cellSize;
+        if (!(next > previous))
+            throw std::invalid_argument(
+                "a heightfield to be traced is too far from the origin for its cell size: move it nearer");
+        previous = next;
+    }
+}
+
+bool valid(const glm::vec3& origin, const glm::vec3& direction) {
+    return std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z) &&
+           std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
+           direction != glm::vec3(0);
+}
+
+}  // namespace
+
+GridTracer::GridTracer(const city::Heightfield& field) {
+    const glm::dvec2 origin(normalisedOrigin(field.origin().x), normalisedOrigin(field.origin().y));
+    requireDistinctBorders(origin.x, field.cellSize(), field.width());
+    requireDistinctBorders(origin.y, field.cellSize(), field.height());
+
+    auto grid = std::make_shared<TracedGrid>();
+    grid->width = field.width();
+    grid->height = field.height();
+    grid->cellSize = field.cellSize();
+    grid->origin = origin;
+    grid->columns.assign(field.cells().begin(), field.cells().end());
+    grid->top = -std::numeric_limits<float>::infinity();
+    float bottom = std::numeric_limits<float>::infinity();
+    for (float& h : grid->columns) {
+        if (std::isnan(h)) h = -std::numeric_limits<float>::infinity();
+        grid->top = std::max(grid->top, h);
+        if (std::isfinite(h)) bottom = std::min(bottom, h);
+    }
+    grid->bottom = std::isfinite(bottom) ? bottom : 0;
+    grid_ = std::move(grid);
+}
+
+TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
+    if (!valid(ray.origin, ray.direction))
+        return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
+    return exactWalk(*grid_, ray, tMax);
+}
+
+bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
+    const glm::vec3 direction = to - from;
+    const float length = glm::length(direction);
+    if (!(length > slack)) return false;
+    const float reach = slack > 0 ? 1 - slack / length : 1;
+    const TraceResult result = trace({from, direction}, reach);
+    return result.status == TraceStatus::hit && result.t < reach;
+}
+
+void GridTracer::traceFan(glm::vec3 origin, std::span<const float> dx, std::span<const float> dy,
+                          std::span<const float> dz, std::span<float> t) const {
+    const std::size_t count = std::min({dx.size(), dy.size(), dz.size(), t.size()});
+    for (std::size_t k = 0; k < count; ++k) t[k] = trace({origin, {dx[k], dy[k], dz[k]}}).t;
+}
+
+}  // namespace reflection
