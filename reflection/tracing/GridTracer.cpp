@@ -62,7 +62,11 @@ GridTracer::GridTracer(const city::Heightfield& field) {
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
     if (!valid(ray.origin, ray.direction))
         return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
-    return exactWalk(*grid_, ray, tMax);
+    // A NaN limit reaches nothing; an infinite one reaches what a float can express.
+    return exactWalk(*grid_, ray,
+                     tMax < std::numeric_limits<float>::max() || std::isnan(tMax)
+                         ? tMax
+                         : std::numeric_limits<float>::max());
 }
 
 bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
