@@ -1,0 +1,335 @@
+// Compiled once for every instruction set that Highway knows on this architecture; the best is chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "reflection/local_map/ReferenceLookup.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "reflection/local_map/ReferenceLookup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "reflection/reference_maps/CubeMapping.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace reflection {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Float = hn::ScalableTag<float>;
+using Int = hn::RebindToSigned<Float>;
+using Word = hn::RebindToUnsigned<Float>;
+using VF = hn::Vec<Float>;
+using VI = hn::Vec<Int>;
+using VW = hn::Vec<Word>;
+using MF = hn::Mask<Float>;
+
+/// Ray parameter that stands for the sky: far enough that a reference map's offset does not turn the direction by a texel (100 m
+/// at 1e5 m: 1e-3 rad), small enough that float keeps the offset.
+constexpr float skyParameter = 1e5f;
+
+struct MapView {
+    const std::uint8_t* words;
+    const std::uint16_t* chroma;
+    int faceSize;
+    float radianceScale;
+    float ox, oy, oz;
+};
+
+struct FacePoint {
+    VI face;
+    VF u, v;  ///< texels from the face's corner, 0 .. faceSize
+};
+
+HWY_INLINE FacePoint toFace(VF x, VF y, VF z, int faceSize) {
+    const Float d;
+    const Int di;
+    const VF ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
+    const MF isX = hn::And(hn::Ge(ax, ay), hn::Ge(ax, az));
+    const MF isY = hn::AndNot(isX, hn::Ge(ay, az));
+    const VF major = hn::Max(ax, hn::Max(ay, az));
+    const VF sign = hn::SignBit(d);
+    const VF value = hn::IfThenElse(isX, x, hn::IfThenElse(isY, y, z));
+    const VF flip = hn::And(value, sign);
+    // See CubeMapping: +X (-z, -y), -X (z, -y), +Y (x, z), -Y (x, -z), +Z (x, -y), -Z (-x, -y).
+    const VF s = hn::IfThenElse(isX, hn::Xor(hn::Neg(z), flip), hn::IfThenElse(isY, x, hn::Xor(x, flip)));
+    const VF t = hn::IfThenElse(isY, hn::Xor(z, flip), hn::Neg(y));
+    const VF scale = hn::Div(hn::Set(d, 0.5f * static_cast<float>(faceSize)), major);
+    const VF half = hn::Set(d, 0.5f * static_cast<float>(faceSize));
+    const VI pair = hn::IfThenElse(hn::RebindMask(di, isX), hn::Zero(di),
+                                   hn::IfThenElse(hn::RebindMask(di, isY), hn::Set(di, 2), hn::Set(di, 4)));
+    const VI negative = hn::BitCast(di, hn::ShiftRight<31>(hn::BitCast(Word(), value)));
+    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half)};
+}
+
+/// The 20-bit word of a bordered texel.
+HWY_INLINE VW fetchWord(const MapView& map, VI index) {
+    const Int di;
+    const Word dw;
+    const VI five = hn::Add(hn::ShiftLeft<2>(index), index);
+    const VI byte = hn::ShiftRight<1>(five);
+    const VW raw = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.words), byte);
+    const VI odd = hn::And(index, hn::Set(di, 1));
+    return hn::And(hn::Shr(raw, hn::BitCast(dw, hn::ShiftLeft<2>(odd))), hn::Set(dw, 0xfffffu));
+}
+
+HWY_INLINE VI borderedIndex(VI face, VI x, VI y, int faceSize) {
+    const Int di;
+    const VI m = hn::Set(di, faceSize + 2);
+    return hn::Add(hn::Mul(hn::Add(hn::Mul(face, m), y), m), x);
+}
+
+/// Reciprocal of the stored distance in the direction (x, y, z), 0 for sky.
+HWY_INLINE VF reciprocalDistance(const MapView& map, VF x, VF y, VF z) {
+    const Float d;
+    const Int di;
+    const Word dw;
+    const FacePoint p = toFace(x, y, z, map.faceSize);
+    const VI last = hn::Set(di, map.faceSize);
+    const VI one = hn::Set(di, 1);
+    const VI ix = hn::Min(hn::Add(hn::ConvertTo(di, p.u), one), last);
+    const VI iy = hn::Min(hn::Add(hn::ConvertTo(di, p.v), one), last);
+    const VW code = hn::And(fetchWord(map, borderedIndex(p.face, ix, iy, map.faceSize)),
+                            hn::Set(dw, PackedReferenceMap::infiniteDistance));
+    const VW bits = hn::Add(hn::ShiftLeft<16>(code),
+                            hn::Set(dw, static_cast<std::uint32_t>(PackedReferenceMap::distanceExponentBias) << 23));
+    const MF infinite = hn::RebindMask(d, hn::Eq(code, hn::Set(dw, PackedReferenceMap::infiniteDistance)));
+    return hn::IfThenElse(infinite, hn::Zero(d), hn::Div(hn::Set(d, 1.0f), hn::BitCast(d, bits)));
+}
+
+struct Colour {
+    VF red, green, blue;
+};
+
+/// Bilinear in brightness, nearest block in chroma.
+HWY_INLINE Colour fetchColour(const MapView& map, VF x, VF y, VF z) {
+    const Float d;
+    const Int di;
+    const Word dw;
+    const FacePoint p = toFace(x, y, z, map.faceSize);
+    const VF half = hn::Set(d, 0.5f);
+    // Bordered coordinates: texel i has its centre at i + 1.5 - 1 = u + 0.5; clamped for u beyond the face by rounding.
+    const VF greatest = hn::Set(d, static_cast<float>(map.faceSize));
+    const VF u = hn::Min(hn::Max(hn::Add(p.u, half), hn::Zero(d)), hn::Add(greatest, hn::Set(d, 0.9999f)));
+    const VF v = hn::Min(hn::Max(hn::Add(p.v, half), hn::Zero(d)), hn::Add(greatest, hn::Set(d, 0.9999f)));
+    const VI ix = hn::ConvertTo(di, u), iy = hn::ConvertTo(di, v);
+    const VF fx = hn::Sub(u, hn::ConvertTo(d, ix)), fy = hn::Sub(v, hn::ConvertTo(d, iy));
+    const VI index = borderedIndex(p.face, ix, iy, map.faceSize);
+    const VI row = hn::Set(di, map.faceSize + 2);
+    const VI one = hn::Set(di, 1);
+    const auto sum = [&](VI i) {
+        const VW code = hn::ShiftRight<PackedReferenceMap::distanceBits>(fetchWord(map, i));
+        return hn::BitCast(d, hn::Add(hn::ShiftLeft<18>(code), hn::Set(dw, (127u - 16u) << 23)));
+    };
+    const VF s00 = sum(index), s10 = sum(hn::Add(index, one));
+    const VF s01 = sum(hn::Add(index, row)), s11 = sum(hn::Add(hn::Add(index, row), one));
+    const VF top = hn::MulAdd(fx, hn::Sub(s10, s00), s00), bottom = hn::MulAdd(fx, hn::Sub(s11, s01), s01);
+    const VF all = hn::Mul(hn::MulAdd(fy, hn::Sub(bottom, top), top), hn::Set(d, map.radianceScale));
+
+    // The block that holds the nearest texel: (round(u - 0.5) in bordered texels) / 2.
+    const VI bx = hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(u, half)));
+    const VI by = hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half)));
+    const VI m = hn::Set(di, (map.faceSize + 2) / 2);
+    const VI block = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, m), hn::Min(by, hn::Sub(m, one))), m),
+                             hn::Min(bx, hn::Sub(m, one)));
+    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma), hn::ShiftLeft<1>(block));
+    const VW low = hn::Set(dw, 0xffu);
+    const VF unit = hn::Set(d, 1.0f / 255.0f);
+    const VF red = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(shares, low))), unit);
+    const VF blue = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<8>(shares), low))), unit);
+    const VF green = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(hn::Set(d, 1.0f), red), blue));
+    return {hn::Mul(all, red), hn::Mul(all, green), hn::Mul(all, blue)};
+}
+
+MapView viewOf(const Candidate& c) {
+    return {c.map->words(), c.map->chroma(), c.map->faceSize(), c.map->radianceScale(), c.offset.x, c.offset.y, c.offset.z};
+}
+
+/// |X - C| / D - 1 for X = t d; 0 at infinity against sky.
+HWY_INLINE VF disagreement(const MapView& map, VF dx, VF dy, VF dz, VF t) {
+    const Float d;
+    const VF x = hn::Sub(hn::Mul(t, dx), hn::Set(d, map.ox));
+    const VF y = hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy));
+    const VF z = hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz));
+    const VF distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    const VF reciprocal = reciprocalDistance(map, x, y, z);
+    const MF sky = hn::And(hn::Eq(reciprocal, hn::Zero(d)), hn::Ge(t, hn::Set(d, skyParameter)));
+    return hn::IfThenElse(sky, hn::Zero(d), hn::Sub(hn::Mul(distance, reciprocal), hn::Set(d, 1.0f)));
+}
+
+void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate> candidates, const LookupOptions& options,
+                   LocalMap& out) {
+    const Float d;
+    const int n = out.faceSize;
+    const std::size_t lanes = hn::Lanes(d);
+    const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
+    const std::size_t base = out.faceOffset(face);
+    const std::size_t texels = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    const float step = 2.0f / static_cast<float>(n);
+    const VF sky = hn::Set(d, skyParameter);
+    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    const VF agreement = hn::Set(d, options.agreement);
+    const VF one = hn::Set(d, 1.0f);
+    HWY_ALIGN float texelS[HWY_MAX_BYTES / sizeof(float)];
+    HWY_ALIGN float texelT[HWY_MAX_BYTES / sizeof(float)];
+
+    for (std::size_t first = 0; first < texels; first += lanes) {
+        const std::size_t count = std::min(lanes, texels - first);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t texel = first + std::min(lane, count - 1);
+            texelS[lane] = (static_cast<float>(texel % static_cast<std::size_t>(n)) + 0.5f) * step - 1;
+            texelT[lane] = (static_cast<float>(texel / static_cast<std::size_t>(n)) + 0.5f) * step - 1;
+        }
+        const VF s = hn::Load(d, texelS), t = hn::Load(d, texelT);
+        const auto along = [&](float major, float sAxis, float tAxis) {
+            return hn::MulAdd(s, hn::Set(d, sAxis), hn::MulAdd(t, hn::Set(d, tAxis), hn::Set(d, major)));
+        };
+        const VF dx = along(f.major.x, f.sAxis.x, f.tAxis.x);
+        const VF dy = along(f.major.y, f.sAxis.y, f.tAxis.y);
+        const VF dz = along(f.major.z, f.sAxis.z, f.tAxis.z);
+        const VF dd = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+
+        VF start;
+        if (count == lanes) {
+            start = hn::LoadU(d, reciprocal + first);
+        } else {
+            HWY_ALIGN float rest[HWY_MAX_BYTES / sizeof(float)] = {};
+            std::copy_n(reciprocal + first, count, rest);
+            start = hn::Load(d, rest);
+        }
+        start = hn::Min(hn::Div(one, hn::Max(start, hn::Set(d, 1.0f / skyParameter))), sky);
+
+        VF bestError = infinity, bestDepth = start;
+        Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        for (const Candidate& candidate : candidates) {
+            const MapView map = viewOf(candidate);
+            const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox), hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
+            VF ta = start;
+            VF qa = disagreement(map, dx, dy, dz, ta);
+            VF error = hn::Abs(qa), depth = ta;
+            VF tb = ta, qb = qa;
+            for (int k = 1; k < options.lookups; ++k) {
+                if (hn::AllTrue(d, hn::Le(hn::Min(error, bestError), agreement))) break;
+                VF next;
+                if (k == 1) {
+                    // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray parameter is
+                    // (d.C + (t d.d - d.C) / (1 + q)) / d.d. Against sky (q = -1) the ray goes on to the sky.
+                    const MF open = hn::Le(qa, hn::Set(d, -0.9999f));
+                    const VF scale = hn::Div(one, hn::Add(hn::IfThenElse(open, hn::Zero(d), qa), one));
+                    next = hn::Div(hn::MulAdd(hn::Sub(hn::Mul(ta, dd), dc), scale, dc), dd);
+                    next = hn::IfThenElse(open, sky, next);
+                } else {
+                    const VF slope = hn::Sub(qb, qa);
+                    const MF flat = hn::Lt(hn::Abs(slope), hn::Set(d, 1e-6f));
+                    next = hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
+                    next = hn::IfThenElse(flat, tb, next);
+                }
+                // A step may shrink or stretch the distance four times at most, but for the sky.
+                const VF least = hn::Mul(tb, hn::Set(d, 0.25f)), most = hn::Mul(tb, hn::Set(d, 4.0f));
+                next = hn::IfThenElse(hn::Ge(next, sky), sky, hn::Max(hn::Min(next, most), least));
+                ta = tb;
+                qa = qb;
+                tb = next;
+                qb = disagreement(map, dx, dy, dz, tb);
+                const VF size = hn::Abs(qb);
+                const MF better = hn::Lt(size, error);
+                error = hn::IfThenElse(better, size, error);
+                depth = hn::IfThenElse(better, tb, depth);
+            }
+            const MF improves = hn::AndNot(hn::Le(bestError, agreement), hn::Lt(error, bestError));
+            if (!hn::AllFalse(d, improves)) {
+                const Colour c = fetchColour(map, hn::Sub(hn::Mul(depth, dx), hn::Set(d, map.ox)),
+                                             hn::Sub(hn::Mul(depth, dy), hn::Set(d, map.oy)),
+                                             hn::Sub(hn::Mul(depth, dz), hn::Set(d, map.oz)));
+                colour.red = hn::IfThenElse(improves, c.red, colour.red);
+                colour.green = hn::IfThenElse(improves, c.green, colour.green);
+                colour.blue = hn::IfThenElse(improves, c.blue, colour.blue);
+                bestError = hn::IfThenElse(improves, error, bestError);
+                bestDepth = hn::IfThenElse(improves, depth, bestDepth);
+            }
+            if (hn::AllTrue(d, hn::Le(bestError, agreement))) break;
+        }
+        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, sky), infinity, bestDepth);
+
+        const auto store = [&](VF value, std::vector<float>& plane) {
+            if (count == lanes) {
+                hn::StoreU(value, d, plane.data() + base + first);
+            } else {
+                HWY_ALIGN float rest[HWY_MAX_BYTES / sizeof(float)];
+                hn::Store(value, d, rest);
+                std::copy_n(rest, count, plane.data() + base + first);
+            }
+        };
+        store(colour.red, out.red);
+        store(colour.green, out.green);
+        store(colour.blue, out.blue);
+        store(bestDepth, out.depth);
+    }
+}
+
+void LookUpBlended(int face, const float* px, const float* py, const float* pz, const float* weightA, const Candidate& a,
+                   const Candidate& b, LocalMap& out) {
+    const Float d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t texels = static_cast<std::size_t>(out.faceSize) * static_cast<std::size_t>(out.faceSize);
+    const std::size_t base = out.faceOffset(face);
+    const MapView mapA = viewOf(a), mapB = viewOf(b);
+    for (std::size_t first = 0; first < texels; first += lanes) {
+        const std::size_t count = std::min(lanes, texels - first);
+        HWY_ALIGN float rest[4][HWY_MAX_BYTES / sizeof(float)] = {};
+        const auto load = [&](const float* from, int slot) {
+            if (count == lanes) return hn::LoadU(d, from + first);
+            std::fill_n(rest[slot], lanes, 1.0f);
+            std::copy_n(from + first, count, rest[slot]);
+            return hn::Load(d, rest[slot]);
+        };
+        const VF x = load(px, 0), y = load(py, 1), z = load(pz, 2), w = load(weightA, 3);
+        const auto at = [&](const MapView& map) {
+            return fetchColour(map, hn::Sub(x, hn::Set(d, map.ox)), hn::Sub(y, hn::Set(d, map.oy)), hn::Sub(z, hn::Set(d, map.oz)));
+        };
+        const Colour ca = at(mapA), cb = at(mapB);
+        const auto store = [&](VF va, VF vb, std::vector<float>& plane) {
+            const VF value = hn::MulAdd(w, hn::Sub(va, vb), vb);
+            HWY_ALIGN float lane[HWY_MAX_BYTES / sizeof(float)];
+            hn::Store(value, d, lane);
+            std::copy_n(lane, count, plane.data() + base + first);
+        };
+        store(ca.red, cb.red, out.red);
+        store(ca.green, cb.green, out.green);
+        store(ca.blue, cb.blue, out.blue);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace reflection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace reflection {
+
+HWY_EXPORT(LookUpRefined);
+HWY_EXPORT(LookUpBlended);
+
+void lookUpRefined(int face, std::span<const float> reciprocal, std::span<const Candidate> candidates,
+                   const LookupOptions& options, LocalMap& map) {
+    HWY_DYNAMIC_DISPATCH(LookUpRefined)(face, reciprocal.data(), candidates, options, map);
+}
+
+void lookUpBlended(int face, std::span<const float> px, std::span<const float> py, std::span<const float> pz,
+                   std::span<const float> weightA, const Candidate& a, const Candidate& b, LocalMap& map) {
+    HWY_DYNAMIC_DISPATCH(LookUpBlended)(face, px.data(), py.data(), pz.data(), weightA.data(), a, b, map);
+}
+
+float storedDistance(const Candidate& candidate, const glm::vec3& point) {
+    const CubePoint p = cubePoint(point - candidate.offset);
+    const int n = candidate.map->faceSize();
+    const auto texel = [n](float st) {
+        return std::clamp(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), 0, n - 1);
+    };
+    return candidate.map->distanceAt(p.face, texel(p.st.x), texel(p.st.y));
+}
+
+}  // namespace reflection
+#endif

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "reflection/local_map/LocalMap.h"
+#include "reflection/reference_maps/PackedReferenceMap.h"
+
+namespace reflection {
+
+/// One reference map as seen from the centre of a local map.
+struct Candidate {
+    const PackedReferenceMap* map = nullptr;
+    glm::vec3 offset{0};  ///< the map's centre minus the local map's, metres
+};
+
+struct LookupOptions {
+    /// Lookups a candidate may use to move the hit along the ray until the candidate's own distance agrees (1 .. 8).
+    int lookups = 4;
+    /// A candidate that agrees within this share of the distance ends the search. It cannot be below what the
+    /// packed distance resolves (2^-8) and a texel's slant: 1 % is the flat optimum measured on the built-in cities.
+    float agreement = 0.01f;
+};
+
+/// Reads a face of a local map from reference maps with refined hits.
+///
+/// For each texel the ray P + t d starts from the heightfield's hit t0 = 1 / reciprocal. Seen from a candidate at C the point X = P +
+/// t d lies at distance |X - C| in a direction in which the candidate stored D. Along a planar surface q(t) = |X - C| / D - 1 is a
+/// linear function of t (D = c / (n.w) for the unit direction w, so |X - C| / D = n.(X - C) / c), so the secant through two lookups
+/// meets the surface exactly, whatever the angle; the start is the projection of the candidate's own surface point onto the ray. q
+/// < 0: the candidate looks past X, so the heightfield was too fat; q > 0: something hides X from the candidate. The
+/// candidates are asked in the order given until one agrees; where none does the best agreement wins (the paper: the closest).
+///
+/// `reciprocal`: faceSize^2 values of 1/t0, 0 for sky. Writes the face's texels of `map`. Needs at least one candidate, all of one
+/// face size. Cost: about lookups + 5 gathers a texel.
+void lookUpRefined(int face, std::span<const float> reciprocal, std::span<const Candidate> candidates,
+                   const LookupOptions& options, LocalMap& map);
+
+/// The paper's lookup (sections 4.1 to 4.3) for two maps: colours in the directions from each map's centre to the points given,
+/// mixed by the weights. `px, py, pz`: the interpolated points I relative to the local map's centre; `weightA`: weight of
+/// candidate 0, the rest is candidate 1's. All spans faceSize^2.
+void lookUpBlended(int face, std::span<const float> px, std::span<const float> py, std::span<const float> pz,
+                   std::span<const float> weightA, const Candidate& a, const Candidate& b, LocalMap& map);
+
+/// Distance stored in the direction of a point (relative to the local map's centre), nearest texel: what the paper's depth
+/// test compares with. The slow scalar way, for mesh vertices.
+float storedDistance(const Candidate& candidate, const glm::vec3& point);
+
+}  // namespace reflection

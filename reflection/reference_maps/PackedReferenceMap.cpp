@@ -1,0 +1,158 @@
+#include "reflection/reference_maps/PackedReferenceMap.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "reflection/reference_maps/CubeMapping.h"
+
+namespace reflection {
+
+namespace {
+
+constexpr std::uint32_t sumMantissaShift = 18;  // keeps 5 of 23 mantissa bits
+constexpr std::uint32_t sumExponentBias = 127 - 16;
+constexpr std::uint32_t greatestSum = (1u << 9) - 1;
+
+/// Integer hash (finaliser of MurmurHash3): the dither must be the same on every machine.
+std::uint32_t scramble(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x85ebca6bu;
+    x ^= x >> 13;
+    x *= 0xc2b2ae35u;
+    return x ^ (x >> 16);
+}
+
+std::uint32_t encodeSum(float relative, std::uint32_t dither) {
+    const std::uint32_t lowest = sumExponentBias << 23;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(relative);
+    if (!(relative > 0) || bits <= lowest) return 0;
+    return std::min(greatestSum, (bits - lowest + (dither & ((1u << sumMantissaShift) - 1))) >> sumMantissaShift);
+}
+
+float decodeSum(std::uint32_t code) {
+    return std::bit_cast<float>((code << sumMantissaShift) + (sumExponentBias << 23));
+}
+
+float finiteOrZero(float x) { return x > 0 ? std::min(x, std::numeric_limits<float>::max()) : 0.0f; }
+
+}  // namespace
+
+std::uint32_t PackedReferenceMap::encodeDistance(float metres) {
+    constexpr std::uint32_t lowest = static_cast<std::uint32_t>(distanceExponentBias) << 23;
+    if (metres == std::numeric_limits<float>::infinity()) return infiniteDistance;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(metres);
+    if (!(metres > 0) || bits <= lowest) return 0;
+    return std::min(infiniteDistance - 1, (bits - lowest + 0x8000u) >> 16);
+}
+
+float PackedReferenceMap::decodeDistance(std::uint32_t code) {
+    if (code == infiniteDistance) return std::numeric_limits<float>::infinity();
+    return std::bit_cast<float>((code << 16) + (static_cast<std::uint32_t>(distanceExponentBias) << 23));
+}
+
+PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceScale)
+    : position_(map.position), faceSize_(map.faceSize), radianceScale_(radianceScale) {
+    if (faceSize_ < 4 || faceSize_ % 2 != 0)
+        throw std::invalid_argument("a reference map's face size must be even and at least 4");
+    if (!(radianceScale > 0) || !std::isfinite(radianceScale))
+        throw std::invalid_argument("a reference map's radiance scale must be finite and positive");
+    if (map.colour.size() != map.texelCount() || map.distance.size() != map.texelCount())
+        throw std::invalid_argument("a reference map must have six full faces of colour and distance");
+
+    const int n = faceSize_;
+    const int m = n + 2;
+    const std::size_t bordered = 6 * static_cast<std::size_t>(m) * static_cast<std::size_t>(m);
+    words_.assign((bordered * 5 + 1) / 2 + 4, 0);
+    chroma_.assign(bordered / 4 + 1, 0);
+
+    // Where a bordered texel takes its content from: its own face, or across an edge the texel that its direction meets.
+    const auto source = [&](int face, int x, int y) {
+        if (x < 0 || y < 0 || x >= n || y >= n) {
+            const CubePoint p = cubePoint(cubeDirection(face, glm::vec2(x, y) + 0.5f, n));
+            const auto texel = [n](float st) {
+                return std::clamp(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), 0, n - 1);
+            };
+            face = p.face;
+            x = texel(p.st.x);
+            y = texel(p.st.y);
+        }
+        return (static_cast<std::size_t>(face) * static_cast<std::size_t>(n) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(n) +
+               static_cast<std::size_t>(x);
+    };
+
+    for (int face = 0; face < 6; ++face) {
+        for (int by = 0; by < m / 2; ++by) {
+            for (int bx = 0; bx < m / 2; ++bx) {
+                float red = 0, blue = 0, all = 0;
+                for (int k = 0; k < 4; ++k) {
+                    const int x = 2 * bx + (k & 1) - 1;
+                    const int y = 2 * by + (k >> 1) - 1;
+                    const std::size_t from = source(face, x, y);
+                    const glm::vec3 c(finiteOrZero(map.colour[from].r), finiteOrZero(map.colour[from].g),
+                                      finiteOrZero(map.colour[from].b));
+                    const float sum = c.r + c.g + c.b;
+                    red += c.r;
+                    blue += c.b;
+                    all += sum;
+
+                    const std::size_t index = borderedIndex(face, x, y);
+                    const std::uint32_t word =
+                        (encodeSum(sum / radianceScale, scramble(static_cast<std::uint32_t>(index)))
+                         << distanceBits) |
+                        encodeDistance(map.distance[from]);
+                    const std::size_t byte = index * 5 / 2;
+                    if (index % 2 == 0) {
+                        words_[byte] = static_cast<std::uint8_t>(word);
+                        words_[byte + 1] = static_cast<std::uint8_t>(word >> 8);
+                        words_[byte + 2] = static_cast<std::uint8_t>((words_[byte + 2] & 0xf0u) | (word >> 16));
+                    } else {
+                        words_[byte] = static_cast<std::uint8_t>((words_[byte] & 0x0fu) | ((word & 0xfu) << 4));
+                        words_[byte + 1] = static_cast<std::uint8_t>(word >> 4);
+                        words_[byte + 2] = static_cast<std::uint8_t>(word >> 12);
+                    }
+                }
+                const auto share = [all](float part) {
+                    return all > 0 ? static_cast<std::uint32_t>(std::lround(255.0f * part / all)) : 85u;
+                };
+                const std::size_t block =
+                    (static_cast<std::size_t>(face) * static_cast<std::size_t>(m / 2) + static_cast<std::size_t>(by)) *
+                        static_cast<std::size_t>(m / 2) +
+                    static_cast<std::size_t>(bx);
+                chroma_[block] = static_cast<std::uint16_t>(share(red) | (share(blue) << 8));
+            }
+        }
+    }
+}
+
+std::size_t PackedReferenceMap::borderedIndex(int face, int x, int y) const {
+    const auto m = static_cast<std::size_t>(faceSize_ + 2);
+    return (static_cast<std::size_t>(face) * m + static_cast<std::size_t>(y + 1)) * m + static_cast<std::size_t>(x + 1);
+}
+
+std::uint32_t PackedReferenceMap::wordAt(std::size_t index) const {
+    const std::size_t byte = index * 5 / 2;
+    const std::uint32_t three = words_[byte] | (static_cast<std::uint32_t>(words_[byte + 1]) << 8) |
+                                (static_cast<std::uint32_t>(words_[byte + 2]) << 16);
+    return (three >> (index % 2 == 0 ? 0 : 4)) & 0xfffffu;
+}
+
+float PackedReferenceMap::distanceAt(int face, int x, int y) const {
+    return decodeDistance(wordAt(borderedIndex(face, x, y)) & infiniteDistance);
+}
+
+glm::vec3 PackedReferenceMap::colourAt(int face, int x, int y) const {
+    const float sum = radianceScale_ * decodeSum(wordAt(borderedIndex(face, x, y)) >> distanceBits);
+    const auto half = static_cast<std::size_t>(faceSize_ + 2) / 2;
+    const std::uint16_t shares =
+        chroma_[(static_cast<std::size_t>(face) * half + static_cast<std::size_t>((y + 1) / 2)) * half +
+                static_cast<std::size_t>((x + 1) / 2)];
+    const float red = sum * static_cast<float>(shares & 0xff) / 255.0f;
+    const float blue = sum * static_cast<float>(shares >> 8) / 255.0f;
+    return {red, std::max(0.0f, sum - red - blue), blue};
+}
+
+}  // namespace reflection

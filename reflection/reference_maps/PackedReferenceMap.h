@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "reflection/reference_maps/ReferenceMap.h"
+
+namespace reflection {
+
+/// A reference map in three bytes a texel, HDR colour and distance together, made for random access by SIMD gathers:
+/// no block to decode, no table.
+///
+///   word    20 bits a texel: distance in 11 bits (4 exponent, 7 mantissa: 1/8 m .. 8 km within 0.4 %, then
+///           infinity), the sum R+G+B in 9 bits (4 exponent, 5 mantissa: 16 octaves below `radianceScale`, within 1.6 %, dithered
+///           so that a gradient does not band).
+///   chroma  16 bits for each 2x2 texels: R/(R+G+B) and B/(R+G+B) in 8 bits each: the eye resolves colour less
+///           finely than brightness.
+///
+/// Every face carries a border of one texel from its neighbours, so that a bilinear lookup never leaves its face.
+/// For comparison: 4 bytes in the paper, with 8-bit colour and 8-bit depth.
+class PackedReferenceMap {
+  public:
+    PackedReferenceMap() = default;
+    /// `radianceScale`: greatest R+G+B that can be told apart; greater values are clamped. Face size must be even and
+    /// at least 4; negative and NaN colours count as 0. Cost: linear in texels.
+    PackedReferenceMap(const ReferenceMap& map, float radianceScale);
+
+    const glm::dvec3& position() const { return position_; }
+    int faceSize() const { return faceSize_; }
+    float radianceScale() const { return radianceScale_; }
+    const std::uint8_t* words() const { return words_.data(); }
+    const std::uint16_t* chroma() const { return chroma_.data(); }
+    std::size_t bytes() const { return words_.size() + chroma_.size() * sizeof(std::uint16_t); }
+    std::size_t texelCount() const { return 6 * static_cast<std::size_t>(faceSize_) * static_cast<std::size_t>(faceSize_); }
+
+    /// The slow way to one texel, border included: x and y in -1 .. faceSize. Oracle of the SIMD lookup.
+    float distanceAt(int face, int x, int y) const;
+    glm::vec3 colourAt(int face, int x, int y) const;
+
+    static constexpr std::uint32_t distanceBits = 11;
+    static constexpr std::uint32_t infiniteDistance = (1u << distanceBits) - 1;
+    /// Smallest distance that is told apart: 2^-3 m; codes below mean this.
+    static constexpr int distanceExponentBias = 127 - 3;
+    static std::uint32_t encodeDistance(float metres);
+    static float decodeDistance(std::uint32_t code);
+
+  private:
+    std::size_t borderedIndex(int face, int x, int y) const;
+    std::uint32_t wordAt(std::size_t index) const;
+
+    glm::dvec3 position_{0};
+    int faceSize_ = 0;
+    float radianceScale_ = 1;
+    std::vector<std::uint8_t> words_;    ///< 20-bit words, little-endian, packed without gaps, 4 bytes of padding
+    std::vector<std::uint16_t> chroma_;  ///< low byte red share, high byte blue share; one of padding
+};
+
+}  // namespace reflection
