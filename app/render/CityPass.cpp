@@ -1,0 +1,140 @@
+#include "app/render/CityPass.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+
+namespace app {
+
+namespace {
+
+constexpr std::uint32_t levelsPerPrototype = 64;
+
+}  // namespace
+
+CityPass::CityPass(const city::CityModel& city) : geometry_(city), materials_(city.materials) {
+    for (std::size_t target = 0; target < 2; ++target) {
+        for (std::size_t instanced = 0; instanced < 2; ++instanced) {
+            for (std::size_t cutout = 0; cutout < 2; ++cutout) {
+                std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
+                if (instanced != 0) defines.emplace_back("INSTANCED");
+                if (cutout != 0) defines.emplace_back("CUTOUT");
+                programs_[target][instanced][cutout] =
+                    reflection::gl::Program::fromFiles({"city.vert", "city.frag"}, defines);
+            }
+        }
+    }
+}
+
+void CityPass::Batch::clear() {
+    counts.clear();
+    offsets.clear();
+    baseVertices.clear();
+}
+
+void CityPass::Batch::add(const MeshRange& range) {
+    counts.push_back(static_cast<GLsizei>(range.indexCount));
+    offsets.push_back(
+        reinterpret_cast<const void*>(static_cast<std::uintptr_t>(range.firstIndex) * sizeof(std::uint32_t)));
+    baseVertices.push_back(range.baseVertex);
+}
+
+void CityPass::useFor(Coverage coverage, bool instanced, PassTarget target) {
+    if (coverage == Coverage::solid) {
+        glEnable(GL_CULL_FACE);
+    } else {
+        glDisable(GL_CULL_FACE);
+    }
+    programs_[static_cast<std::size_t>(target)][instanced ? 1 : 0][coverage == Coverage::cutout ? 1 : 0]
+        .use();
+}
+
+CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float tolerance) {
+    Counts counts;
+    materials_.bind();
+    const glm::vec3 eye(view.eye);
+
+    // Chunks, nearest first, so that what lies behind is rejected before it is shaded.
+    order_.clear();
+    const auto& chunks = geometry_.chunks();
+    for (std::uint32_t i = 0; i < chunks.size(); ++i) {
+        const glm::vec3 centre = chunks[i].bounds.centre() - eye;
+        const glm::vec3 half = 0.5f * chunks[i].bounds.size();
+        if (!view.frustum.touches(centre, half)) {
+            ++counts.chunksCulled;
+            continue;
+        }
+        const glm::vec3 nearest = glm::max(glm::abs(centre) - half, glm::vec3(0));
+        // Ground goes last: buildings and cars hide much of it.
+        const float late = chunks[i].kind == city::ChunkKind::ground ? 1e6f : 0.f;
+        order_.emplace_back(glm::length(nearest) + late, i);
+        ++counts.chunksDrawn;
+    }
+    std::ranges::sort(order_);
+    for (Batch& batch : batches_) batch.clear();
+    for (const auto& [distance, i] : order_)
+        for (std::size_t c = 0; c < coverageCount; ++c)
+            if (!chunks[i].ranges[c].empty()) {
+                batches_[c].add(chunks[i].ranges[c]);
+                counts.triangles += chunks[i].ranges[c].indexCount / 3;
+            }
+    geometry_.chunkArray().bind();
+    for (std::size_t c = 0; c < coverageCount; ++c) {
+        const Batch& batch = batches_[c];
+        if (batch.counts.empty()) continue;
+        useFor(static_cast<Coverage>(c), false, target);
+        glMultiDrawElementsBaseVertex(GL_TRIANGLES, batch.counts.data(), GL_UNSIGNED_INT,
+                                      batch.offsets.data(), static_cast<GLsizei>(batch.counts.size()),
+                                      batch.baseVertices.data());
+        ++counts.drawCalls;
+    }
+
+    // Placements by prototype and level of detail, one instanced draw each.
+    placed_.clear();
+    const auto& placements = geometry_.placements();
+    for (std::uint32_t i = 0; i < placements.size(); ++i) {
+        const CityGeometry::Placement& p = placements[i];
+        const glm::vec3 centre = p.centre - eye;
+        if (!view.frustum.touches(centre, p.radius)) continue;
+        const auto& levels = geometry_.prototypes()[p.prototype].levels;
+        const float distance = std::max(glm::length(centre) - p.radius, 0.1f);
+        const float allowed = tolerance * distance / (view.pixelsPerRadian * std::max(p.scale, 1e-6f));
+        std::uint32_t level = 0;
+        while (level + 1 < levels.size() && level + 1 < levelsPerPrototype &&
+               levels[level + 1].error <= allowed)
+            ++level;
+        placed_.push_back({p.prototype * levelsPerPrototype + level, distance, i});
+    }
+    if (placed_.empty()) return counts;
+    std::ranges::sort(placed_, [](const Placed& a, const Placed& b) {
+        return a.key != b.key ? a.key < b.key : a.distance < b.distance;
+    });
+    instances_.clear();
+    for (const Placed& p : placed_) instances_.push_back(placements[p.placement].instance);
+    geometry_.instances().replace(std::span<const PlacementInstance>(instances_));
+    geometry_.instancedArray().bind();
+    for (std::size_t c = 0; c < coverageCount; ++c) {
+        bool used = false;
+        for (std::size_t first = 0; first < placed_.size();) {
+            std::size_t last = first;
+            while (last < placed_.size() && placed_[last].key == placed_[first].key) ++last;
+            const std::uint32_t key = placed_[first].key;
+            const MeshRange& range =
+                geometry_.prototypes()[key / levelsPerPrototype].levels[key % levelsPerPrototype].ranges[c];
+            if (!range.empty()) {
+                if (!used) useFor(static_cast<Coverage>(c), true, target);
+                used = true;
+                glDrawElementsInstancedBaseVertexBaseInstance(
+                    GL_TRIANGLES, static_cast<GLsizei>(range.indexCount), GL_UNSIGNED_INT,
+                    reinterpret_cast<const void*>(static_cast<std::uintptr_t>(range.firstIndex) *
+                                                  sizeof(std::uint32_t)),
+                    static_cast<GLsizei>(last - first), range.baseVertex, static_cast<GLuint>(first));
+                ++counts.drawCalls;
+                counts.triangles += std::uint64_t{range.indexCount / 3} * (last - first);
+            }
+            first = last;
+        }
+    }
+    return counts;
+}
+
+}  // namespace app

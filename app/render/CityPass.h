@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "app/render/CityGeometry.h"
+#include "app/render/CityMaterials.h"
+#include "app/render/PassTarget.h"
+#include "reflection/gl/Program.h"
+
+namespace app {
+
+/// Draws the static city, as much of it as a view can see, nearest first.
+class CityPass {
+  public:
+    explicit CityPass(const city::CityModel& city);
+
+    struct Counts {
+        std::uint32_t drawCalls = 0;
+        std::uint64_t triangles = 0;
+        std::uint32_t chunksDrawn = 0;
+        std::uint32_t chunksCulled = 0;
+    };
+    /// The uniform block Frame must hold the same view. `tolerance`: pixels by which a level of detail may be
+    /// off.
+    Counts draw(const PassView& view, PassTarget target, float tolerance);
+
+    const CityGeometry& geometry() const { return geometry_; }
+
+  private:
+    struct Batch {
+        std::vector<GLsizei> counts;
+        std::vector<const void*> offsets;
+        std::vector<GLint> baseVertices;
+        void clear();
+        void add(const MeshRange& range);
+    };
+    struct Placed {
+        std::uint32_t key;  ///< prototype and level
+        float distance;
+        std::uint32_t placement;
+    };
+    void useFor(Coverage coverage, bool instanced, PassTarget target);
+
+    CityGeometry geometry_;
+    CityMaterials materials_;
+    std::array<std::array<std::array<reflection::gl::Program, 2>, 2>, 2>
+        programs_;  ///< [target][instanced][cutout]
+    std::array<Batch, coverageCount> batches_;
+    std::vector<std::pair<float, std::uint32_t>> order_;
+    std::vector<Placed> placed_;
+    std::vector<PlacementInstance> instances_;
+};
+
+}  // namespace app

@@ -1,0 +1,224 @@
+#include "app/render/SceneRenderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <limits>
+
+#include "app/render/CityPass.h"
+#include "app/render/CubeFaces.h"
+#include "app/render/FrameUniforms.h"
+#include "app/render/VehiclePass.h"
+#include "reflection/gl/Framebuffer.h"
+#include "reflection/gl/Texture.h"
+
+namespace app {
+
+namespace gl = reflection::gl;
+
+namespace {
+
+/// Cubes are seen from inside vehicles, close to the road.
+constexpr float cubeNear = 0.05f;
+/// Pixels by which a level of detail may be off on screen.
+constexpr float levelTolerance = 0.75f;
+
+float pixelsPerRadian(const View& view) {
+    return 0.5f * static_cast<float>(view.size.y) * std::abs(view.clipFromView[1][1]);
+}
+
+void setDrawState() {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GEQUAL);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_STENCIL_TEST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+}  // namespace
+
+struct SceneRenderer::Impl {
+    Impl(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
+         const RenderOptions& renderOptions)
+        : options(renderOptions),
+          cityPass(city),
+          vehiclePass(models),
+          frameUniforms(gl::Buffer::create()),
+          emptyArray(gl::VertexArray::create()),
+          cubeTarget(gl::Framebuffer::create()) {
+        for (std::size_t target = 0; target < 2; ++target)
+            skyPrograms[target] =
+                gl::Program::fromFiles({"sky.vert", "sky.frag"}, definesFor(static_cast<PassTarget>(target)));
+    }
+
+    void setFrame(const PassView& view) {
+        FrameUniforms uniforms;
+        uniforms.clipFromRelative = view.clipFromRelative;
+        uniforms.setEye(view.eye);
+        uniforms.setLighting(lighting);
+        frameUniforms.replaceWith(uniforms);
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameUniforms.name());
+    }
+
+    void drawSky(const PassView& view, PassTarget target) {
+        gl::Program& program = skyPrograms[static_cast<std::size_t>(target)];
+        program.set("relativeFromClip", glm::inverse(view.clipFromRelative));
+        program.use();
+        emptyArray.bind();
+        glDisable(GL_CULL_FACE);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+
+    void requireViewTarget(glm::ivec2 size) {
+        if (viewSize == size) return;
+        viewSize = size;
+        colour = gl::Texture::image2D(GL_RGBA8, size.x, size.y);
+        depth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, size.x, size.y);
+        viewTarget = gl::Framebuffer::create();
+        viewTarget.attach(GL_COLOR_ATTACHMENT0, colour.name()).attach(GL_DEPTH_ATTACHMENT, depth.name());
+        viewTarget.requireComplete("a view");
+    }
+
+    RenderOptions options;
+    CityPass cityPass;
+    VehiclePass vehiclePass;
+    gl::Buffer frameUniforms;
+    gl::VertexArray emptyArray;
+    std::array<gl::Program, 2> skyPrograms;
+
+    glm::ivec2 viewSize{0};
+    gl::Texture colour;
+    gl::Texture depth;
+    gl::Framebuffer viewTarget;
+
+    gl::Framebuffer cubeTarget;
+    gl::Texture cubeDepth;
+    int cubeFaceSize = 0;
+
+    Lighting lighting;
+    std::vector<vehicles::VehiclePose> poses;
+    std::vector<vehicles::SignalColour> signalColours;
+    std::vector<std::uint32_t> chosen;
+    RenderCounters counters;
+};
+
+SceneRenderer::SceneRenderer(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
+                             const RenderOptions& options)
+    : impl_(std::make_unique<Impl>(city, models, options)) {}
+
+SceneRenderer::~SceneRenderer() = default;
+
+void SceneRenderer::prepare(const FrameScene& scene) {
+    impl_->lighting = scene.lighting;
+    impl_->poses = scene.vehicles;
+    impl_->signalColours = scene.signalColours;
+}
+
+void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
+                             std::uint32_t framebuffer) {
+    Impl& my = *impl_;
+    my.counters = {};
+    if (view.size.x <= 0 || view.size.y <= 0) return;
+    my.requireViewTarget(view.size);
+    const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
+
+    setDrawState();
+    glBindFramebuffer(GL_FRAMEBUFFER, my.viewTarget.name());
+    glViewport(0, 0, view.size.x, view.size.y);
+    glClearDepth(0);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    my.setFrame(pass);
+
+    my.chosen.clear();
+    for (const VisibleVehicle& v : visibleVehicles(view)) my.chosen.push_back(v.index);
+    const VehiclePass::Counts vehicles =
+        my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
+                            {&reflections.textures, reflections.slots}, levelTolerance);
+    const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, levelTolerance);
+    my.drawSky(pass, PassTarget::view);
+
+    glBlitNamedFramebuffer(my.viewTarget.name(), framebuffer, 0, 0, view.size.x, view.size.y, 0, 0,
+                           view.size.x, view.size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+
+    my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + 1;
+    my.counters.triangles = vehicles.triangles + city.triangles;
+    my.counters.chunksDrawn = city.chunksDrawn;
+    my.counters.chunksCulled = city.chunksCulled;
+    my.counters.vehiclesDrawn = vehicles.vehicles;
+}
+
+void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTarget& target,
+                             const reflection::CubeContent& content) {
+    Impl& my = *impl_;
+    if (target.colour == 0 || target.faceSize <= 0) return;
+    if (my.cubeFaceSize != target.faceSize) {
+        my.cubeFaceSize = target.faceSize;
+        my.cubeDepth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, target.faceSize, target.faceSize);
+        my.cubeTarget.attach(GL_DEPTH_ATTACHMENT, my.cubeDepth.name());
+    }
+    setDrawState();
+    glBindFramebuffer(GL_FRAMEBUFFER, my.cubeTarget.name());
+    glViewport(0, 0, target.faceSize, target.faceSize);
+    glClearDepth(0);
+    for (int face = 0; face < 6; ++face) {
+        my.cubeTarget.attachLayer(GL_COLOR_ATTACHMENT0, target.colour, 6 * target.layer + face);
+        if (target.distance != 0) {
+            my.cubeTarget.attachLayer(GL_COLOR_ATTACHMENT1, target.distance, 6 * target.layer + face);
+        } else {
+            my.cubeTarget.attach(GL_COLOR_ATTACHMENT1, 0);
+        }
+        const std::array<GLenum, 2> attachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+        glNamedFramebufferDrawBuffers(my.cubeTarget.name(), target.distance != 0 ? 2 : 1, attachments.data());
+        glClear(GL_DEPTH_BUFFER_BIT);
+
+        const PassView pass(centre, clipFromCubeFace(face, cubeNear),
+                            0.5f * static_cast<float>(target.faceSize));
+        my.setFrame(pass);
+        if (content.vehicles) {
+            my.chosen.clear();
+            for (std::uint32_t i = 0; i < my.poses.size(); ++i) {
+                const vehicles::VehiclePose& pose = my.poses[i];
+                if (pose.id == content.excludedVehicle ||
+                    pose.model >= my.vehiclePass.geometry().models().size())
+                    continue;
+                if (pass.frustum.touches(my.vehiclePass.centreOf(pose, centre),
+                                         my.vehiclePass.geometry().models()[pose.model].radius))
+                    my.chosen.push_back(i);
+            }
+            my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, levelTolerance);
+        }
+        if (content.city) my.cityPass.draw(pass, PassTarget::cube, levelTolerance);
+        my.drawSky(pass, PassTarget::cube);
+    }
+}
+
+const RenderCounters& SceneRenderer::counters() const {
+    return impl_->counters;
+}
+
+std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(const View& view) const {
+    const Impl& my = *impl_;
+    const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
+    std::vector<VisibleVehicle> visible;
+    for (std::uint32_t i = 0; i < my.poses.size(); ++i) {
+        const vehicles::VehiclePose& pose = my.poses[i];
+        if (pose.model >= my.vehiclePass.geometry().models().size()) continue;
+        const float radius = my.vehiclePass.geometry().models()[pose.model].radius;
+        const glm::vec3 centre = my.vehiclePass.centreOf(pose, view.eye);
+        if (!pass.frustum.touches(centre, radius)) continue;
+        const float distance = std::max(glm::length(centre), 0.5f * radius);
+        visible.push_back({i, 2 * radius / distance * pass.pixelsPerRadian});
+    }
+    return visible;
+}
+
+}  // namespace app

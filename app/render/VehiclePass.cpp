@@ -1,0 +1,131 @@
+#include "app/render/VehiclePass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <numbers>
+#include <tuple>
+
+namespace app {
+
+namespace {
+
+glm::mat3 aboutY(double angle) {
+    const auto c = static_cast<float>(std::cos(angle));
+    const auto s = static_cast<float>(std::sin(angle));
+    return glm::mat3(c, 0, -s, 0, 1, 0, s, 0, c);
+}
+
+glm::mat3 aboutZ(double angle) {
+    const auto c = static_cast<float>(std::cos(angle));
+    const auto s = static_cast<float>(std::sin(angle));
+    return glm::mat3(c, s, 0, -s, c, 0, 0, 0, 1);
+}
+
+glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {
+    return aboutZ(pose.heading) * aboutY(-pose.pitch);
+}
+
+VehicleInstance instanceOf(const glm::mat3& r, const glm::vec3& t, const vehicles::VehiclePose& pose,
+                           float layer) {
+    return {glm::vec4(r[0].x, r[1].x, r[2].x, t.x), glm::vec4(r[0].y, r[1].y, r[2].y, t.y),
+            glm::vec4(r[0].z, r[1].z, r[2].z, t.z), glm::vec4(pose.paint, pose.braking ? 1.f : 0.f), layer};
+}
+
+}  // namespace
+
+VehiclePass::VehiclePass(std::span<const vehicles::VehicleModel> models) : geometry_(models) {
+    for (std::size_t target = 0; target < 2; ++target) {
+        for (std::size_t reflective = 0; reflective < 2; ++reflective) {
+            std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
+            if (reflective != 0) defines.emplace_back("REFLECTIVE");
+            programs_[target][reflective] =
+                reflection::gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
+        }
+    }
+}
+
+glm::vec3 VehiclePass::centreOf(const vehicles::VehiclePose& pose, const glm::dvec3& eye) const {
+    const glm::vec3 position(pose.position - eye);
+    if (pose.model >= geometry_.models().size()) return position;
+    return position + worldFromVehicle(pose) * geometry_.models()[pose.model].centre;
+}
+
+VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
+                                      std::span<const vehicles::VehiclePose> poses,
+                                      std::span<const std::uint32_t> chosen, const Reflections& reflections,
+                                      float tolerance) {
+    Counts counts;
+    pieces_.clear();
+    for (std::uint32_t index : chosen) {
+        const vehicles::VehiclePose& pose = poses[index];
+        if (pose.model >= geometry_.models().size()) continue;
+        const VehicleGeometry::Model& model = geometry_.models()[pose.model];
+        if (model.levels.empty()) continue;
+        const glm::mat3 rotation = worldFromVehicle(pose);
+        const glm::vec3 position(pose.position - view.eye);
+        const glm::vec3 centre = position + rotation * model.centre;
+        const float distance = std::max(glm::length(centre) - model.radius, 0.1f);
+        const float allowed = tolerance * distance / view.pixelsPerRadian;
+        std::size_t level = 0;
+        while (level + 1 < model.levels.size() && model.levels[level + 1].error <= allowed) ++level;
+
+        reflection::LocalMapSlot slot;
+        if (reflections.textures != nullptr && index < reflections.slots.size())
+            slot = reflections.slots[index];
+        const auto sizeClass = static_cast<std::size_t>(std::max<int>(slot.sizeClass, 0));
+        const bool reflective = slot.valid() && sizeClass < reflections.textures->cubeArrays.size() &&
+                                reflections.textures->cubeArrays[sizeClass] != 0;
+        const std::int32_t group = reflective ? static_cast<std::int32_t>(sizeClass) : -1;
+        const auto layer = static_cast<float>(slot.layer);
+        const auto add = [&](const MeshRange& range, const VehicleInstance& instance) {
+            if (!range.empty()) pieces_.push_back({group, range.firstIndex, range, instance});
+        };
+        add(model.levels[level].body, instanceOf(rotation, position, pose, layer));
+        if (!model.levels[level].wheelsInBody) {
+            for (const vehicles::VehicleModel::Wheel& wheel : model.wheels) {
+                glm::mat3 turn = aboutY(pose.wheelAngle);
+                if (wheel.steered) turn = aboutZ(pose.steering) * turn;
+                if (wheel.mirrored) turn = turn * aboutZ(std::numbers::pi);
+                add(model.wheel,
+                    instanceOf(rotation * turn, position + rotation * wheel.centre, pose, layer));
+            }
+        }
+        ++counts.vehicles;
+    }
+    if (pieces_.empty()) return counts;
+
+    order_.resize(pieces_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    const auto key = [&](std::uint32_t i) { return std::tuple(pieces_[i].sizeClass, pieces_[i].firstIndex); };
+    std::ranges::stable_sort(order_, [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    instances_.clear();
+    for (std::uint32_t i : order_) instances_.push_back(pieces_[i].instance);
+    geometry_.instances().replace(std::span<const VehicleInstance>(instances_));
+
+    geometry_.array().bind();
+    glEnable(GL_CULL_FACE);
+    int used = -2;
+    for (std::size_t first = 0; first < order_.size();) {
+        std::size_t last = first;
+        while (last < order_.size() && key(order_[last]) == key(order_[first])) ++last;
+        const Piece& piece = pieces_[order_[first]];
+        if (piece.sizeClass != used) {
+            used = piece.sizeClass;
+            programs_[static_cast<std::size_t>(target)][used >= 0 ? 1 : 0].use();
+            if (used >= 0)
+                glBindTextureUnit(2, reflections.textures->cubeArrays[static_cast<std::size_t>(used)]);
+        }
+        glDrawElementsInstancedBaseVertexBaseInstance(
+            GL_TRIANGLES, static_cast<GLsizei>(piece.range.indexCount), GL_UNSIGNED_INT,
+            reinterpret_cast<const void*>(static_cast<std::uintptr_t>(piece.range.firstIndex) *
+                                          sizeof(std::uint32_t)),
+            static_cast<GLsizei>(last - first), piece.range.baseVertex, static_cast<GLuint>(first));
+        ++counts.drawCalls;
+        counts.triangles += std::uint64_t{piece.range.indexCount / 3} * (last - first);
+        first = last;
+    }
+    return counts;
+}
+
+}  // namespace app

@@ -1,0 +1,27 @@
+#version 450 core
+#include "frame.glsl"
+#include "output.glsl"
+
+layout(binding = 0) uniform sampler2DArray patterns;  // square roots of albedos: linear enough to filter, quick to decode
+
+layout(location = 0) in vec2 texcoord;
+layout(location = 1) flat in float layer;
+layout(location = 2) in vec3 shaded;
+layout(location = 3) in vec3 sunlit;
+layout(location = 4) in vec3 shadowCoordinate;
+#ifdef CUBE
+layout(location = 5) in vec3 relative;
+#endif
+
+void main() {
+    vec4 texel = texture(patterns, vec3(texcoord, layer));
+#ifdef CUTOUT
+    if (texel.a < 0.5) discard;
+#endif
+    vec3 radiance = texel.rgb * texel.rgb * (shaded + sunlit);
+#ifdef CUBE
+    writePixel(radiance, relative);
+#else
+    writePixel(radiance);
+#endif
+}

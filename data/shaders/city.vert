@@ -1,0 +1,60 @@
+#version 450 core
+// The static city: all light that does not need a texture is worked out per vertex.
+#ifdef CUBE
+#extension GL_ARB_shader_viewport_layer_array : enable
+#endif
+#include "frame.glsl"
+
+struct MaterialEntry {
+    vec4 tint;      // rgb albedo; w: layer of the pattern array
+    vec4 emission;  // rgb
+};
+layout(std140, binding = 1) uniform Materials { MaterialEntry materials[1024]; };
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 texcoord;
+layout(location = 2) in vec4 normal;
+layout(location = 3) in uint material;
+layout(location = 4) in float open;
+#ifdef INSTANCED
+layout(location = 5) in vec4 worldFromPrototype0;  // rows
+layout(location = 6) in vec4 worldFromPrototype1;
+layout(location = 7) in vec4 worldFromPrototype2;
+#endif
+#ifdef CUBE
+uniform int layer;
+layout(location = 5) out vec3 relativeOut;
+#endif
+
+layout(location = 0) out vec2 texcoordOut;
+layout(location = 1) flat out float layerOut;
+layout(location = 2) out vec3 shadedOut;   // tint times everything but the sun
+layout(location = 3) out vec3 sunlitOut;   // tint times the sun
+layout(location = 4) out vec3 shadowOut;
+
+void main() {
+#ifdef INSTANCED
+    vec4 local = vec4(position, 1.0);
+    vec3 world = vec3(dot(worldFromPrototype0, local), dot(worldFromPrototype1, local), dot(worldFromPrototype2, local));
+    vec3 n = normalize(vec3(dot(worldFromPrototype0.xyz, normal.xyz), dot(worldFromPrototype1.xyz, normal.xyz),
+                            dot(worldFromPrototype2.xyz, normal.xyz)));
+#else
+    vec3 world = position;
+    vec3 n = normal.xyz;
+#endif
+    vec3 relative = relativeFromWorld(world);
+    gl_Position = frame.clipFromRelative * vec4(relative, 1.0);
+#ifdef CUBE
+    relativeOut = relative;
+#ifdef LAYERED
+    gl_Layer = layer;
+#endif
+#endif
+    MaterialEntry m = materials[material];
+    vec3 albedo = m.tint.rgb * inversePi;
+    texcoordOut = texcoord;
+    layerOut = m.tint.w;
+    shadedOut = albedo * ambientIrradiance(n, open) + m.emission.rgb * frame.skyIrradiance.w;
+    sunlitOut = albedo * frame.sunIrradiance.rgb * max(dot(n, frame.sunDirection.xyz), 0.0);
+    shadowOut = (frame.shadowFromWorld * vec4(world, 1.0)).xyz;
+}

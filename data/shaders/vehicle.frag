@@ -1,0 +1,38 @@
+#version 450 core
+#include "frame.glsl"
+#include "output.glsl"
+
+layout(location = 0) in vec3 relative;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 diffuse;
+layout(location = 3) in vec2 coat;
+#ifdef REFLECTIVE
+layout(location = 4) flat in float mapLayer;
+layout(binding = 2) uniform samplerCubeArray localMap;
+#endif
+
+void main() {
+    vec3 towardsEye = -normalize(relative);
+    vec3 n = normalize(normal);
+    float facing = max(dot(n, towardsEye), 0.0);
+    float grazing = 1.0 - facing;
+    float grazing2 = grazing * grazing;
+    float fresnel = coat.x + (1.0 - coat.x) * coat.y * grazing2 * grazing2 * grazing;  // Schlick
+    vec3 reflected = 2.0 * dot(n, towardsEye) * n - towardsEye;
+#ifdef REFLECTIVE
+    vec3 mirrored = textureLod(localMap, vec4(reflected, mapLayer), 0.0).rgb;
+#else
+    // No map: the sky's mean above, the ground's below.
+    float up = clamp(reflected.z * 2.0 + 0.5, 0.0, 1.0);
+    vec3 mirrored = mix(frame.groundIrradiance.rgb, frame.skyIrradiance.rgb, up) * (inversePi * 0.8);
+    float glint = max(dot(reflected, frame.sunDirection.xyz), 0.0);
+    glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint;
+    mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y);
+#endif
+    vec3 radiance = diffuse * (1.0 - fresnel) + mirrored * fresnel;
+#ifdef CUBE
+    writePixel(radiance, relative);
+#else
+    writePixel(radiance);
+#endif
+}

@@ -1,0 +1,58 @@
+#version 450 core
+#ifdef CUBE
+#extension GL_ARB_shader_viewport_layer_array : enable
+#endif
+#include "frame.glsl"
+
+// vehicles::Surface: albedo, reflectance at normal incidence (F0).
+const vec4 surfaces[9] = vec4[9](vec4(1.0, 1.0, 1.0, 0.04),       // paint: times the instance's colour
+                                 vec4(0.012, 0.015, 0.016, 0.06),  // glass
+                                 vec4(0.05, 0.05, 0.05, 0.72),     // chrome
+                                 vec4(0.018, 0.018, 0.019, 0.012), // tyre
+                                 vec4(0.22, 0.22, 0.23, 0.38),     // rim
+                                 vec4(0.55, 0.56, 0.58, 0.08),     // head lamp
+                                 vec4(0.30, 0.012, 0.010, 0.06),   // tail lamp
+                                 vec4(0.016, 0.016, 0.017, 0.02),  // trim
+                                 vec4(0.04, 0.038, 0.036, 0.0));   // interior
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;
+layout(location = 2) in uint surface;
+layout(location = 3) in vec4 relativeFromVehicle0;  // rows
+layout(location = 4) in vec4 relativeFromVehicle1;
+layout(location = 5) in vec4 relativeFromVehicle2;
+layout(location = 6) in vec4 paint;                 // rgb; w: 1 braking
+layout(location = 7) in float mapLayer;
+
+layout(location = 0) out vec3 relativeOut;
+layout(location = 1) out vec3 normalOut;
+layout(location = 2) out vec3 diffuseOut;   // outgoing radiance of the layer under the coat
+layout(location = 3) out vec2 coatOut;      // F0; 1: a surface with a polished coat
+#ifdef REFLECTIVE
+layout(location = 4) flat out float mapLayerOut;
+#endif
+uniform int layer;
+
+void main() {
+    vec4 local = vec4(position, 1.0);
+    vec3 relative = vec3(dot(relativeFromVehicle0, local), dot(relativeFromVehicle1, local), dot(relativeFromVehicle2, local));
+    vec3 n = normalize(vec3(dot(relativeFromVehicle0.xyz, normal.xyz), dot(relativeFromVehicle1.xyz, normal.xyz),
+                            dot(relativeFromVehicle2.xyz, normal.xyz)));
+    gl_Position = frame.clipFromRelative * vec4(relative, 1.0);
+#ifdef LAYERED
+    gl_Layer = layer;
+#endif
+    vec4 s = surfaces[surface];
+    vec3 albedo = surface == 0u ? paint.rgb : s.rgb;
+    vec3 light = ambientIrradiance(n, 0.85) + frame.sunIrradiance.rgb * max(dot(n, frame.sunDirection.xyz), 0.0);
+    vec3 emission = vec3(0.0);
+    if (surface == 5u) emission = vec3(6.0, 5.6, 5.0) * frame.skyIrradiance.w;
+    if (surface == 6u) emission = vec3(1.6, 0.05, 0.03) * (1.4 * paint.w + 0.35 * frame.skyIrradiance.w);
+    relativeOut = relative;
+    normalOut = n;
+    diffuseOut = albedo * light * inversePi + emission;
+    coatOut = vec2(s.w, s.w >= 0.03 ? 1.0 : 0.0);
+#ifdef REFLECTIVE
+    mapLayerOut = mapLayer;
+#endif
+}
