@@ -150,7 +150,7 @@ TEST(PictureTest, emptyPicturesAndBadPlacesAreRefused) {
     ASSERT_EQ(input->spec().height, 17);
     ASSERT_EQ(input->spec().nchannels, 3);
     std::vector<std::uint8_t> read(written.rgb.size());
-    ASSERT_TRUE(input->read_image(OIIO::TypeDesc::UINT8, read.data()));
+    ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, read.data()));
     EXPECT_EQ(read, written.rgb);
 }
 
