@@ -1,0 +1,89 @@
+#include "reflection/gl/LocalMapAtlas.h"
+
+#include <algorithm>
+#include <array>
+
+#include "reflection/gl/Texture.h"
+
+namespace reflection {
+
+namespace {
+
+constexpr GLenum format = GL_R11F_G11F_B10F;
+constexpr std::size_t texelBytes = 4;
+
+}  // namespace
+
+struct LocalMapAtlas::Impl {
+    struct SizeClass {
+        gl::Texture array;
+        int layers = 0;
+    };
+    std::array<SizeClass, localMapFaceSizes.size()> classes;
+};
+
+LocalMapAtlas::LocalMapAtlas() : impl_(std::make_unique<Impl>()) {}
+LocalMapAtlas::~LocalMapAtlas() = default;
+LocalMapAtlas::LocalMapAtlas(LocalMapAtlas&&) noexcept = default;
+LocalMapAtlas& LocalMapAtlas::operator=(LocalMapAtlas&&) noexcept = default;
+
+void LocalMapAtlas::reserve(int sizeClass, int layers) {
+    Impl::SizeClass& c = impl_->classes[static_cast<std::size_t>(sizeClass)];
+    if (layers <= c.layers) return;
+    const int grown = std::max(layers, std::max(4, 2 * c.layers));
+    const int faceSize = localMapFaceSizes[static_cast<std::size_t>(sizeClass)];
+    const int levels = gl::mipLevels(faceSize);
+    gl::Texture larger = gl::Texture::cubeArray(format, faceSize, grown, levels);
+    larger.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
+    if (c.layers > 0) {
+        for (int level = 0; level < levels; ++level) {
+            const int side = faceSize >> level;
+            glCopyImageSubData(c.array.name(), GL_TEXTURE_CUBE_MAP_ARRAY, level, 0, 0, 0, larger.name(),
+                               GL_TEXTURE_CUBE_MAP_ARRAY, level, 0, 0, 0, side, side, 6 * c.layers);
+        }
+    }
+    c.array = std::move(larger);
+    c.layers = grown;
+}
+
+void LocalMapAtlas::upload(LocalMapSlot slot, const PackedMips& mips) {
+    const Impl::SizeClass& c = impl_->classes[static_cast<std::size_t>(slot.sizeClass)];
+    for (int level = 0; level < mips.levelCount(); ++level) {
+        const int side = mips.faceSize >> level;
+        glTextureSubImage3D(c.array.name(), level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
+                            mips.texels.data() + mips.levelOffset(level));
+    }
+}
+
+CubeTarget LocalMapAtlas::target(LocalMapSlot slot) const {
+    CubeTarget target;
+    target.colour = impl_->classes[static_cast<std::size_t>(slot.sizeClass)].array.name();
+    target.layer = slot.layer;
+    target.faceSize = localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)];
+    return target;
+}
+
+void LocalMapAtlas::finishDrawn(LocalMapSlot slot) {
+    const int faceSize = localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)];
+    const gl::Texture one = gl::Texture::view(GL_TEXTURE_CUBE_MAP, impl_->classes[static_cast<std::size_t>(slot.sizeClass)].array.name(),
+                                              format, 0, gl::mipLevels(faceSize), 6 * slot.layer, 6);
+    glGenerateTextureMipmap(one.name());
+}
+
+LocalMapTextures LocalMapAtlas::textures() const {
+    LocalMapTextures names;
+    for (std::size_t c = 0; c < impl_->classes.size(); ++c) names.cubeArrays[c] = impl_->classes[c].array.name();
+    return names;
+}
+
+std::size_t LocalMapAtlas::bytes() const {
+    std::size_t total = 0;
+    for (std::size_t c = 0; c < impl_->classes.size(); ++c) {
+        for (int side = localMapFaceSizes[c]; side > 0; side /= 2)
+            total += static_cast<std::size_t>(impl_->classes[c].layers) * 6 * static_cast<std::size_t>(side) *
+                     static_cast<std::size_t>(side) * texelBytes;
+    }
+    return total;
+}
+
+}  // namespace reflection

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "reflection/gl/LocalMapTextures.h"
+#include "reflection/gl/SceneDrawer.h"
+#include "reflection/local_map/LocalMapSlot.h"
+#include "reflection/local_map/PackedMips.h"
+
+namespace reflection {
+
+/// Local maps on the GPU: a cube map array of R11F_G11F_B10F with all mipmaps for each size class, grown on demand. Needs a
+/// current GL 4.5 context in every call and at destruction.
+class LocalMapAtlas {
+  public:
+    LocalMapAtlas();
+    ~LocalMapAtlas();
+    LocalMapAtlas(LocalMapAtlas&&) noexcept;
+    LocalMapAtlas& operator=(LocalMapAtlas&&) noexcept;
+
+    /// Makes room for layers 0 .. layers-1 of a class; contents of layers that were there stay. GL names may change.
+    void reserve(int sizeClass, int layers);
+
+    /// Replaces a map. The slot must be reserved and the mips' face size that of its class.
+    void upload(LocalMapSlot slot, const PackedMips& mips);
+
+    /// Where SceneDrawer::drawCube may draw a map; call `finishDrawn` afterwards to make its mipmaps.
+    CubeTarget target(LocalMapSlot slot) const;
+    void finishDrawn(LocalMapSlot slot);
+
+    LocalMapTextures textures() const;
+    std::size_t bytes() const;  ///< on the GPU, mipmaps included
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace reflection
