@@ -1,0 +1,224 @@
+#include "app/frame/ReflectionEngine.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/local_map/PackedMips.h"
+#include "reflection/reference_maps/Selection.h"
+
+namespace app {
+
+namespace {
+
+reflection::LocalMapMethod localMethod(const ReflectionSettings& settings) {
+    switch (settings.method) {
+        case ReflectionMethod::box:
+            return reflection::LocalMapMethod::box;
+        case ReflectionMethod::mem:
+            return settings.variant == MemVariant::paper ? reflection::LocalMapMethod::memPaper : reflection::LocalMapMethod::mem;
+        default:
+            return reflection::LocalMapMethod::blend;
+    }
+}
+
+}  // namespace
+
+PlanOptions planOptionsFor(const ReflectionSettings& settings) {
+    PlanOptions options;
+    switch (settings.quality) {
+        case Quality::low:
+            options.texelBudget = 60'000;
+            options.texelsPerPixel = 0.25f;
+            options.errorThreshold = 1;
+            break;
+        case Quality::medium:
+            break;
+        case Quality::high:
+            options.texelBudget = 500'000;
+            options.texelsPerPixel = 1;
+            options.errorThreshold = 0.25f;
+            break;
+    }
+    // The paper rebuilds every visible vehicle's map every frame; re-rendering is the yardstick and does so too.
+    options.everyFrame = settings.everyFrame || settings.method == ReflectionMethod::rerender ||
+                         (settings.method == ReflectionMethod::mem && settings.variant == MemVariant::paper);
+    return options;
+}
+
+std::size_t candidateCount(const ReflectionSettings& settings) {
+    if (settings.method != ReflectionMethod::mem || settings.variant == MemVariant::paper) return 2;
+    return settings.quality == Quality::low ? 3 : settings.quality == Quality::medium ? 4 : 6;
+}
+
+reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize) {
+    reflection::LocalMapRequest request;
+    request.method = localMethod(settings);
+    request.faceSize = faceSize;
+    if (request.method == reflection::LocalMapMethod::memPaper) {
+        // Section 4.4: 10 x 10, divided down to the size of a texel at most; R is not given in the paper: 0.5 divides at a
+        // change of scale of one half.
+        request.mesh = {10, 0, reflection::RefineCriterion::depthRatio, 0.5f};
+        while ((10 << (request.mesh.depth + 1)) <= faceSize) ++request.mesh.depth;
+    } else {
+        request.mesh.baseCells = std::max(1, faceSize / 8);
+        request.mesh.depth = faceSize >= 8 ? 3 : 0;
+        request.lookup.lookups = settings.quality == Quality::high ? 6 : 4;
+    }
+    return request;
+}
+
+struct ReflectionEngine::Impl {
+    const reflection::GridTracer& tracer;
+    std::span<const reflection::PackedReferenceMap> maps;
+    std::vector<float> centreHeights;
+    ReflectionSettings settings;
+    ReflectionPlanner planner;
+    ReflectionPlan plan;
+    ReflectionCounters counters;
+    reflection::LocalMapAtlas atlas;
+    bool fixedMapBuilt = false;
+
+    struct Scratch {
+        reflection::LocalMapBuilder builder;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratch;
+    std::vector<reflection::LocalMap> built;
+    std::vector<reflection::PackedMips> packed;
+    std::vector<reflection::LocalMapRequest> requests;
+    std::vector<std::vector<reflection::Candidate>> candidates;
+
+    void forget() {
+        planner.reset();
+        fixedMapBuilt = false;
+    }
+    void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
+    void buildFixedMap();
+};
+
+ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer, std::span<const reflection::PackedReferenceMap> maps,
+                                   std::span<const vehicles::VehicleModel> models, const ReflectionSettings& settings)
+    : impl_(std::make_unique<Impl>(Impl{tracer, maps, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}})) {
+    // The middle of the painted body: a little above half of the height.
+    for (const vehicles::VehicleModel& model : models) impl_->centreHeights.push_back(0.55f * model.height);
+    for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
+}
+
+ReflectionEngine::~ReflectionEngine() = default;
+
+void ReflectionEngine::configure(const ReflectionSettings& settings) {
+    if (settings.method != impl_->settings.method || settings.variant != impl_->settings.variant) impl_->forget();
+    impl_->settings = settings;
+}
+
+const ReflectionSettings& ReflectionEngine::settings() const { return impl_->settings; }
+
+void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMap> maps) {
+    impl_->maps = maps;
+    impl_->counters.referenceMapBytes = 0;
+    for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
+    impl_->forget();
+}
+
+reflection::LocalMapTextures ReflectionEngine::textures() const { return impl_->atlas.textures(); }
+const ReflectionCounters& ReflectionEngine::counters() const { return impl_->counters; }
+
+void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const MapJob> jobs) {
+    built.resize(std::max(built.size(), jobs.size()));
+    packed.resize(std::max(packed.size(), jobs.size()));
+    requests.resize(jobs.size());
+    candidates.resize(jobs.size());
+    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+        const int faceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(jobs[i].slot.sizeClass)];
+        reflection::LocalMapRequest request = requestFor(settings, faceSize);
+        request.centre = jobs[i].centre;
+        candidates[i] = request.method == reflection::LocalMapMethod::mem
+                            ? reflection::selectCandidates(maps, request.centre, tracer, candidateCount(settings))
+                            : reflection::selectNearestTwo(maps, request.centre);
+        request.candidates = candidates[i];
+        const double heading = scene.vehicles[jobs[i].vehicle].heading;
+        request.streetDirection = {std::cos(heading), std::sin(heading), 0};
+        requests[i] = request;
+        built[i].resize(faceSize);
+    });
+    std::atomic<std::uint64_t> rays{0};
+    tbb::parallel_for(std::size_t{0}, 6 * jobs.size(), [&](std::size_t k) {
+        rays += scratch.local().builder.buildFace(tracer, requests[k / 6], static_cast<int>(k % 6), built[k / 6]);
+    });
+    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { reflection::packMips(built[i], packed[i]); });
+    counters.rays = rays;
+    for (std::size_t i = 0; i < jobs.size(); ++i) atlas.upload(jobs[i].slot, packed[i]);
+}
+
+void ReflectionEngine::Impl::buildFixedMap() {
+    if (fixedMapBuilt || maps.empty()) return;
+    // The map that sees most of the city (placement puts it first) stands for all.
+    reflection::LocalMapRequest request;
+    request.method = reflection::LocalMapMethod::blend;
+    request.faceSize = reflection::localMapFaceSizes[0];
+    request.centre = maps.front().position();
+    const std::vector<reflection::Candidate> one{{&maps.front(), glm::vec3(0)}};
+    request.candidates = one;
+    reflection::LocalMap map;
+    map.resize(request.faceSize);
+    for (int face = 0; face < 6; ++face) scratch.local().builder.buildFace(tracer, request, face, map);
+    reflection::PackedMips mips;
+    reflection::packMips(map, mips);
+    atlas.reserve(0, 1);
+    atlas.upload({0, 0}, mips);
+    fixedMapBuilt = true;
+}
+
+const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::span<const SeenVehicle> seen,
+                                               reflection::SceneDrawer& drawer) {
+    const auto start = std::chrono::steady_clock::now();
+    Impl& engine = *impl_;
+    engine.counters.rays = 0;
+    if (engine.settings.method == ReflectionMethod::none) {
+        engine.plan = {};
+    } else if (engine.settings.method == ReflectionMethod::fixed) {
+        engine.plan = {};
+        engine.plan.visible = static_cast<std::uint32_t>(seen.size());
+        if (!seen.empty()) engine.buildFixedMap();
+        engine.plan.slots.resize(scene.vehicles.size());
+        if (engine.fixedMapBuilt)
+            for (const SeenVehicle& vehicle : seen) engine.plan.slots[vehicle.index] = {0, 0};
+    } else {
+        engine.plan = engine.planner.plan(scene, seen, engine.centreHeights, planOptionsFor(engine.settings));
+        for (std::size_t c = 0; c < engine.planner.layersNeeded().size(); ++c)
+            engine.atlas.reserve(static_cast<int>(c), engine.planner.layersNeeded()[c]);
+        if (engine.settings.method == ReflectionMethod::rerender) {
+            for (const MapJob& job : engine.plan.jobs) {
+                reflection::CubeContent content;
+                content.vehicles = engine.settings.vehiclesInMaps;
+                content.excludedVehicle = scene.vehicles[job.vehicle].id;
+                drawer.drawCube(job.centre, engine.atlas.target(job.slot), content);
+                engine.atlas.finishDrawn(job.slot);
+            }
+        } else {
+            engine.buildMaps(scene, engine.plan.jobs);
+        }
+    }
+    engine.counters.visible = engine.plan.visible;
+    engine.counters.rebuilt = static_cast<std::uint32_t>(engine.plan.jobs.size());
+    engine.counters.fresh = engine.plan.fresh;
+    engine.counters.postponed = engine.plan.postponed;
+    engine.counters.texels = engine.plan.texels;
+    engine.counters.localMapBytes = engine.atlas.bytes();
+    engine.counters.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return engine.plan;
+}
+
+std::vector<reflection::LocalMapMesh::Quad> ReflectionEngine::meshOf(const glm::dvec3& centre, int face, int faceSize,
+                                                                     int& latticeSize) const {
+    reflection::LocalMapMesh mesh;
+    mesh.build(impl_->tracer, glm::vec3(centre), face, requestFor(impl_->settings, faceSize).mesh);
+    latticeSize = mesh.latticeSize();
+    return {mesh.quads().begin(), mesh.quads().end()};
+}
+
+}  // namespace app

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "app/frame/FrameScene.h"
+#include "app/frame/ReflectionMethod.h"
+#include "app/frame/ReflectionPlan.h"
+#include "reflection/gl/LocalMapTextures.h"
+#include "reflection/gl/SceneDrawer.h"
+#include "reflection/local_map/LocalMapBuilder.h"
+#include "reflection/reference_maps/PackedReferenceMap.h"
+#include "reflection/tracing/GridTracer.h"
+#include "vehicles/models/VehicleModel.h"
+
+namespace app {
+
+struct ReflectionSettings {
+    ReflectionMethod method = ReflectionMethod::mem;
+    MemVariant variant = MemVariant::ours;
+    Quality quality = Quality::medium;
+    bool everyFrame = false;   ///< rebuild every visible map every frame
+    bool vehiclesInMaps = true;  ///< other vehicles appear in each vehicle's map
+};
+
+/// What the settings mean in numbers; kept in one place so that benches and panels show the same.
+PlanOptions planOptionsFor(const ReflectionSettings& settings);
+/// Mesh, lookup and candidate count of a local map of this size.
+reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize);
+std::size_t candidateCount(const ReflectionSettings& settings);
+
+struct ReflectionCounters {
+    std::uint32_t visible = 0, rebuilt = 0, fresh = 0, postponed = 0;
+    std::uint64_t texels = 0, rays = 0;
+    std::size_t localMapBytes = 0;      ///< on the GPU
+    std::size_t referenceMapBytes = 0;
+    double milliseconds = 0;            ///< planning, building and uploading, CPU side
+};
+
+/// Runs the reflections of a frame: plans which local maps to build, builds them on all cores (or has the scene drawn, for
+/// `rerender`), uploads them. Keeps references to tracer and maps. Needs a current GL 4.5 context.
+class ReflectionEngine {
+  public:
+    ReflectionEngine(const reflection::GridTracer& tracer, std::span<const reflection::PackedReferenceMap> maps,
+                     std::span<const vehicles::VehicleModel> models, const ReflectionSettings& settings);
+    ~ReflectionEngine();
+
+    /// New settings; maps are forgotten where the method changes.
+    void configure(const ReflectionSettings& settings);
+    const ReflectionSettings& settings() const;
+    /// Other reference maps (another light): all local maps are rebuilt.
+    void replaceMaps(std::span<const reflection::PackedReferenceMap> maps);
+
+    /// Plans and executes one frame. `drawer` must be prepared with the same scene.
+    const ReflectionPlan& update(const FrameScene& scene, std::span<const SeenVehicle> seen, reflection::SceneDrawer& drawer);
+
+    reflection::LocalMapTextures textures() const;
+    const ReflectionCounters& counters() const;
+
+    /// The mesh of a vehicle's local map, as lines in face coordinates, for looking at: built anew.
+    std::vector<reflection::LocalMapMesh::Quad> meshOf(const glm::dvec3& centre, int face, int faceSize, int& latticeSize) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace app
