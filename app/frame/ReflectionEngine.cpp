@@ -6,8 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
 
+#include "app/frame/VehicleShading.h"
 #include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/local_map/MovingObjects.h"
 #include "reflection/local_map/PackedMips.h"
 #include "reflection/reference_maps/Selection.h"
 
@@ -75,6 +79,7 @@ reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int f
 struct ReflectionEngine::Impl {
     const reflection::GridTracer& tracer;
     std::span<const reflection::PackedReferenceMap> maps;
+    std::span<const vehicles::VehicleModel> models;
     std::vector<float> centreHeights;
     ReflectionSettings settings;
     ReflectionPlanner planner;
@@ -91,18 +96,20 @@ struct ReflectionEngine::Impl {
     std::vector<reflection::PackedMips> packed;
     std::vector<reflection::LocalMapRequest> requests;
     std::vector<std::vector<reflection::Candidate>> candidates;
+    std::vector<std::vector<reflection::MovingObject>> neighbours;
 
     void forget() {
         planner.reset();
         fixedMapBuilt = false;
     }
     void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
+    void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize, std::vector<reflection::MovingObject>& out);
     void buildFixedMap();
 };
 
 ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer, std::span<const reflection::PackedReferenceMap> maps,
                                    std::span<const vehicles::VehicleModel> models, const ReflectionSettings& settings)
-    : impl_(std::make_unique<Impl>(Impl{tracer, maps, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}})) {
+    : impl_(std::make_unique<Impl>(Impl{tracer, maps, models, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}, {}})) {
     // The middle of the painted body: a little above half of the height.
     for (const vehicles::VehicleModel& model : models) impl_->centreHeights.push_back(0.55f * model.height);
     for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
@@ -132,6 +139,7 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
     packed.resize(std::max(packed.size(), jobs.size()));
     requests.resize(jobs.size());
     candidates.resize(jobs.size());
+    neighbours.resize(std::max(neighbours.size(), jobs.size()));
     tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
         const int faceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(jobs[i].slot.sizeClass)];
         reflection::LocalMapRequest request = requestFor(settings, faceSize);
@@ -144,14 +152,31 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
         request.streetDirection = {std::cos(heading), std::sin(heading), 0};
         requests[i] = request;
         built[i].resize(faceSize);
+        neighbours[i].clear();
+        if (settings.vehiclesInMaps) gatherNeighbours(scene, jobs[i], faceSize, neighbours[i]);
     });
     std::atomic<std::uint64_t> rays{0};
     tbb::parallel_for(std::size_t{0}, 6 * jobs.size(), [&](std::size_t k) {
-        rays += scratch.local().builder.buildFace(tracer, requests[k / 6], static_cast<int>(k % 6), built[k / 6]);
+        const int face = static_cast<int>(k % 6);
+        rays += scratch.local().builder.buildFace(tracer, requests[k / 6], face, built[k / 6]);
+        reflection::drawMovingObjects(neighbours[k / 6], face, built[k / 6]);
     });
     tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { reflection::packMips(built[i], packed[i]); });
     counters.rays = rays;
     for (std::size_t i = 0; i < jobs.size(); ++i) atlas.upload(jobs[i].slot, packed[i]);
+}
+
+void ReflectionEngine::Impl::gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
+                                              std::vector<reflection::MovingObject>& out) {
+    for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
+        const vehicles::VehiclePose& pose = scene.vehicles[i];
+        if (i == job.vehicle || pose.model >= models.size()) continue;
+        const glm::dvec3 apart = pose.position - job.centre;
+        // Fewer than four texels across (a face spans pi / 2): lost in the filter of any but the flattest mirror.
+        const double range = models[pose.model].length * faceSize / (4 * std::numbers::pi / 2);
+        if (glm::dot(apart, apart) > range * range) continue;
+        shadeForLocalMap(models[pose.model], pose, scene.lighting, job.centre, out.emplace_back());
+    }
 }
 
 void ReflectionEngine::Impl::buildFixedMap() {

@@ -1,0 +1,86 @@
+#include "app/frame/VehicleShading.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace app {
+
+namespace {
+
+struct SurfaceOptics {
+    glm::vec3 albedo;
+    float f0;
+};
+
+// As in data/shaders/vehicle.vert.
+constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::count)> surfaces{{
+    {{1.0f, 1.0f, 1.0f}, 0.04f},
+    {{0.012f, 0.015f, 0.016f}, 0.06f},
+    {{0.05f, 0.05f, 0.05f}, 0.72f},
+    {{0.018f, 0.018f, 0.019f}, 0.012f},
+    {{0.22f, 0.22f, 0.23f}, 0.38f},
+    {{0.55f, 0.56f, 0.58f}, 0.08f},
+    {{0.30f, 0.012f, 0.010f}, 0.06f},
+    {{0.016f, 0.016f, 0.017f}, 0.02f},
+    {{0.04f, 0.038f, 0.036f}, 0.0f},
+}};
+
+}  // namespace
+
+glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface, const vehicles::VehiclePose& pose,
+                          const glm::vec3& normal, const glm::vec3& towardsEye) {
+    constexpr float inversePi = std::numbers::inv_pi_v<float>;
+    const SurfaceOptics& optics = surfaces[std::min(static_cast<std::size_t>(surface), surfaces.size() - 1)];
+    const glm::vec3 albedo = surface == vehicles::Surface::paint ? pose.paint : optics.albedo;
+    const glm::vec3 ambient = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, 0.5f + 0.5f * normal.z) * 0.85f;
+    const glm::vec3 light = ambient + lighting.sunIrradiance * std::max(glm::dot(normal, lighting.sunDirection), 0.0f);
+    const float lit = lighting.lampsLit ? 1.0f : 0.0f;
+    glm::vec3 emission(0);
+    if (surface == vehicles::Surface::headLamp) emission = glm::vec3(6.0f, 5.6f, 5.0f) * lit;
+    if (surface == vehicles::Surface::tailLamp)
+        emission = glm::vec3(1.6f, 0.05f, 0.03f) * (1.4f * (pose.braking ? 1.0f : 0.0f) + 0.35f * lit);
+    const glm::vec3 diffuse = albedo * light * inversePi + emission;
+
+    const float coat = optics.f0 >= 0.03f ? 1.0f : 0.0f;
+    const float grazing = 1 - std::max(glm::dot(normal, towardsEye), 0.0f);
+    const float grazing2 = grazing * grazing;
+    const float fresnel = optics.f0 + (1 - optics.f0) * coat * grazing2 * grazing2 * grazing;
+    const glm::vec3 reflected = 2 * glm::dot(normal, towardsEye) * normal - towardsEye;
+    const float up = std::clamp(reflected.z * 2 + 0.5f, 0.0f, 1.0f);
+    glm::vec3 mirrored = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, up) * (inversePi * 0.8f);
+    mirrored += lighting.sunIrradiance * (8 * std::pow(std::max(glm::dot(reflected, lighting.sunDirection), 0.0f), 128.0f) * coat);
+    return diffuse * (1 - fresnel) + mirrored * fresnel;
+}
+
+glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {
+    const auto ch = static_cast<float>(std::cos(pose.heading)), sh = static_cast<float>(std::sin(pose.heading));
+    const auto cp = static_cast<float>(std::cos(pose.pitch)), sp = static_cast<float>(std::sin(pose.pitch));
+    // Columns: forward (nose up by the pitch), left, up.
+    return {glm::vec3(ch * cp, sh * cp, sp), glm::vec3(-sh, ch, 0), glm::vec3(-ch * sp, -sh * sp, cp)};
+}
+
+void shadeForLocalMap(const vehicles::VehicleModel& model, const vehicles::VehiclePose& pose, const Lighting& lighting,
+                      const glm::dvec3& centre, reflection::MovingObject& object) {
+    object.positions.clear();
+    object.radiance.clear();
+    object.indices.clear();
+    if (model.levels.empty()) return;
+    const city::Mesh& mesh = model.levels.back().body;
+    const glm::mat3 rotation = worldFromVehicle(pose);
+    const glm::vec3 offset(pose.position - centre);
+    for (const city::Vertex& v : mesh.vertices) {
+        const glm::vec3 position = offset + rotation * v.position;
+        const float distance = glm::length(position);
+        const glm::vec3 towardsEye = distance > 0 ? -position / distance : glm::vec3(0, 0, 1);
+        object.positions.push_back(position);
+        object.radiance.push_back(
+            vehicleRadiance(lighting, static_cast<vehicles::Surface>(v.material), pose, rotation * v.normal, towardsEye));
+    }
+    object.indices = mesh.indices;
+}
+
+}  // namespace app

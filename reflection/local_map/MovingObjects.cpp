@@ -1,0 +1,139 @@
+#include "reflection/local_map/MovingObjects.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "reflection/reference_maps/CubeMapping.h"
+
+namespace reflection {
+
+namespace {
+
+/// Nearest depth that is drawn, metres: inside it a vehicle would intersect the one that mirrors it.
+constexpr float nearest = 0.05f;
+
+/// A corner in face coordinates: s and t times depth, and the depth itself.
+struct Corner {
+    glm::vec3 at;
+    glm::vec3 radiance;
+};
+
+/// A corner on the face: texel coordinates, reciprocal depth and radiance over depth (all linear over the face).
+struct Projected {
+    float x, y, reciprocal;
+    glm::vec3 radiance;
+};
+
+Corner between(const Corner& a, const Corner& b, float depth) {
+    const float f = (depth - a.at.z) / (b.at.z - a.at.z);
+    return {glm::mix(a.at, b.at, f), glm::mix(a.radiance, b.radiance, f)};
+}
+
+/// Twice the signed area of (a, b, p).
+float edge(const Projected& a, const Projected& b, float x, float y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); }
+
+bool topLeft(const Projected& a, const Projected& b) { return (a.y == b.y && b.x < a.x) || b.y > a.y; }
+
+class FaceRaster {
+  public:
+    FaceRaster(int face, LocalMap& map) : map_(map), offset_(map.faceOffset(face)), size_(map.faceSize) {}
+
+    std::uint32_t written() const { return written_; }
+
+    void triangle(const Corner& a, const Corner& b, const Corner& c) {
+        // A cube face is seen from inside with t downwards, as a picture is: counter-clockwise in the world stays so on a face whose
+        // axes (s, t, major) are left-handed, which all six of OpenGL's are; the area is then negative in (x, y) with y down.
+        std::array<Corner, 4> polygon;
+        std::size_t count = 0;
+        const std::array<const Corner*, 3> in{&a, &b, &c};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Corner& p = *in[i];
+            const Corner& q = *in[(i + 1) % 3];
+            const bool pIn = p.at.z >= nearest, qIn = q.at.z >= nearest;
+            if (pIn) polygon[count++] = p;
+            if (pIn != qIn) polygon[count++] = between(p, q, nearest);
+        }
+        if (count < 3) return;
+        std::array<Projected, 4> corners;
+        for (std::size_t i = 0; i < count; ++i) corners[i] = project(polygon[i]);
+        fill(corners[0], corners[1], corners[2]);
+        if (count == 4) fill(corners[0], corners[2], corners[3]);
+    }
+
+  private:
+    Projected project(const Corner& c) const {
+        const float reciprocal = 1 / c.at.z;
+        const float half = 0.5f * static_cast<float>(size_);
+        return {(c.at.x * reciprocal + 1) * half, (c.at.y * reciprocal + 1) * half, reciprocal, c.radiance * reciprocal};
+    }
+
+    void fill(const Projected& a, const Projected& cornerB, const Projected& cornerC) {
+        const float area = edge(a, cornerB, cornerC.x, cornerC.y);
+        if (!(area < 0)) return;  // seen from behind, or no area, or not finite
+        // Turned round so that the inside is positive.
+        const Projected& b = cornerC;
+        const Projected& c = cornerB;
+        const float inverse = -1 / area;
+        const auto limit = static_cast<float>(size_);
+        const auto first = [&](float least) { return static_cast<int>(std::ceil(std::clamp(least - 0.5f, 0.0f, limit))); };
+        const auto last = [&](float most) { return static_cast<int>(std::floor(std::clamp(most - 0.5f, -1.0f, limit - 1))); };
+        const int x0 = first(std::min({a.x, b.x, c.x})), x1 = last(std::max({a.x, b.x, c.x}));
+        const int y0 = first(std::min({a.y, b.y, c.y})), y1 = last(std::max({a.y, b.y, c.y}));
+        const bool ownsA = topLeft(b, c), ownsB = topLeft(c, a), ownsC = topLeft(a, b);
+        for (int y = y0; y <= y1; ++y) {
+            for (int x = x0; x <= x1; ++x) {
+                const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+                const float wa = edge(b, c, px, py), wb = edge(c, a, px, py), wc = edge(a, b, px, py);
+                if (wa < 0 || wb < 0 || wc < 0 || (wa == 0 && !ownsA) || (wb == 0 && !ownsB) || (wc == 0 && !ownsC)) continue;
+                const float reciprocal = (wa * a.reciprocal + wb * b.reciprocal + wc * c.reciprocal) * inverse;
+                const float depth = 1 / reciprocal;
+                const std::size_t i = offset_ + static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+                if (!(depth < map_.depth[i])) continue;
+                const glm::vec3 radiance = (wa * a.radiance + wb * b.radiance + wc * c.radiance) * (inverse * depth);
+                map_.red[i] = radiance.r;
+                map_.green[i] = radiance.g;
+                map_.blue[i] = radiance.b;
+                map_.depth[i] = depth;
+                ++written_;
+            }
+        }
+    }
+
+    LocalMap& map_;
+    std::size_t offset_;
+    int size_;
+    std::uint32_t written_ = 0;
+};
+
+}  // namespace
+
+std::uint32_t drawMovingObjects(std::span<const MovingObject> objects, int face, LocalMap& map) {
+    const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
+    FaceRaster raster(face, map);
+    std::vector<Corner> corners;
+    for (const MovingObject& object : objects) {
+        corners.resize(object.positions.size());
+        bool ahead = false;
+        std::array<bool, 4> allOutside{true, true, true, true};
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::vec3& p = object.positions[i];
+            const glm::vec3 at(glm::dot(f.sAxis, p), glm::dot(f.tAxis, p), glm::dot(f.major, p));
+            corners[i] = {at, object.radiance[i]};
+            ahead = ahead || at.z >= nearest;
+            allOutside[0] = allOutside[0] && at.x > at.z;
+            allOutside[1] = allOutside[1] && at.x < -at.z;
+            allOutside[2] = allOutside[2] && at.y > at.z;
+            allOutside[3] = allOutside[3] && at.y < -at.z;
+        }
+        if (!ahead || allOutside[0] || allOutside[1] || allOutside[2] || allOutside[3]) continue;
+        for (std::size_t k = 0; k + 2 < object.indices.size(); k += 3)
+            raster.triangle(corners[object.indices[k]], corners[object.indices[k + 1]], corners[object.indices[k + 2]]);
+    }
+    return raster.written();
+}
+
+}  // namespace reflection
