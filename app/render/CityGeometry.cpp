@@ -67,6 +67,7 @@ CityGeometry::CityGeometry(const city::CityModel& city) {
         c.bounds = chunk.mesh.bounds();
         c.kind = chunk.kind;
         c.ranges = collector.add(chunk.mesh);
+        bounds_.extend(c.bounds);
         chunks_.push_back(c);
     }
     for (const city::Prototype& prototype : city.prototypes) {
@@ -97,6 +98,8 @@ CityGeometry::CityGeometry(const city::CityModel& city) {
             {glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
         p.centre = glm::vec3(m * glm::vec4(prototype.centre, 1));
         p.radius = prototype.radius * p.scale;
+        bounds_.extend(p.centre - glm::vec3(p.radius));
+        bounds_.extend(p.centre + glm::vec3(p.radius));
         placements_.push_back(p);
     }
 

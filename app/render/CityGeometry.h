@@ -51,6 +51,8 @@ class CityGeometry {
 
     explicit CityGeometry(const city::CityModel& city);
 
+    /// Of everything, placements with the whole of their bounding spheres.
+    const city::Aabb& bounds() const { return bounds_; }
     const std::vector<Chunk>& chunks() const { return chunks_; }
     const std::vector<Prototype>& prototypes() const { return prototypes_; }
     const std::vector<Placement>& placements() const { return placements_; }
@@ -61,6 +63,7 @@ class CityGeometry {
     reflection::gl::Buffer& instances() { return instances_; }
 
   private:
+    city::Aabb bounds_;
     std::vector<Chunk> chunks_;
     std::vector<Prototype> prototypes_;
     std::vector<Placement> placements_;

@@ -12,14 +12,15 @@ constexpr std::uint32_t levelsPerPrototype = 64;
 }  // namespace
 
 CityPass::CityPass(const city::CityModel& city) : geometry_(city), materials_(city.materials) {
-    for (std::size_t target = 0; target < 2; ++target) {
+    for (std::size_t target = 0; target < passTargetCount; ++target) {
         for (std::size_t instanced = 0; instanced < 2; ++instanced) {
             for (std::size_t cutout = 0; cutout < 2; ++cutout) {
                 std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
                 if (instanced != 0) defines.emplace_back("INSTANCED");
                 if (cutout != 0) defines.emplace_back("CUTOUT");
-                programs_[target][instanced][cutout] =
-                    reflection::gl::Program::fromFiles({"city.vert", "city.frag"}, defines);
+                const bool depth = static_cast<PassTarget>(target) == PassTarget::depth;
+                programs_[target][instanced][cutout] = reflection::gl::Program::fromFiles(
+                    {"city.vert", depth ? "depth.frag" : "city.frag"}, defines);
             }
         }
     }
@@ -97,7 +98,7 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
         if (!view.frustum.touches(centre, p.radius)) continue;
         const auto& levels = geometry_.prototypes()[p.prototype].levels;
         const float distance = std::max(glm::length(centre) - p.radius, 0.1f);
-        const float allowed = tolerance * distance / (view.pixelsPerRadian * std::max(p.scale, 1e-6f));
+        const float allowed = view.allowedError(tolerance, distance) / std::max(p.scale, 1e-6f);
         std::uint32_t level = 0;
         while (level + 1 < levels.size() && level + 1 < levelsPerPrototype &&
                levels[level + 1].error <= allowed)

@@ -45,7 +45,7 @@ class CityPass {
 
     CityGeometry geometry_;
     CityMaterials materials_;
-    std::array<std::array<std::array<reflection::gl::Program, 2>, 2>, 2>
+    std::array<std::array<std::array<reflection::gl::Program, 2>, 2>, passTargetCount>
         programs_;  ///< [target][instanced][cutout]
     std::array<Batch, coverageCount> batches_;
     std::vector<std::pair<float, std::uint32_t>> order_;

@@ -24,11 +24,15 @@ struct FrameUniforms {
         eyeHigh = glm::vec4(high, 0);
         eyeLow = glm::vec4(glm::vec3(eye - glm::dvec3(high)), 0);
     }
+    void setShadow(const glm::mat4& shadowFromWorldMatrix, float normalOffset) {
+        shadowFromWorld = shadowFromWorldMatrix;
+        groundIrradiance.w = normalOffset;
+    }
     void setLighting(const Lighting& lighting) {
         sunDirection = glm::vec4(lighting.sunDirection, lighting.turbidity);
         sunIrradiance = glm::vec4(lighting.sunIrradiance, lighting.exposure);
         skyIrradiance = glm::vec4(lighting.skyIrradiance, lighting.lampsLit ? 1.f : 0.f);
-        groundIrradiance = glm::vec4(lighting.groundIrradiance, 0);
+        groundIrradiance = glm::vec4(lighting.groundIrradiance, groundIrradiance.w);
     }
 };
 static_assert(sizeof(FrameUniforms) == 2 * 64 + 6 * 16);

@@ -10,11 +10,13 @@
 
 namespace app {
 
-/// What a pass draws into: display colours, or linear radiance and distance.
-enum class PassTarget : std::uint8_t { view, cube };
+/// What a pass draws into: display colours, linear radiance and distance, or depth alone.
+enum class PassTarget : std::uint8_t { view, cube, depth };
+inline constexpr std::size_t passTargetCount = 3;
 
 inline std::vector<std::string> definesFor(PassTarget target, std::vector<std::string> more = {}) {
     if (target == PassTarget::cube) more.emplace_back("CUBE");
+    if (target == PassTarget::depth) more.emplace_back("DEPTH");
     return more;
 }
 
@@ -23,10 +25,16 @@ struct PassView {
     glm::dvec3 eye{0};
     glm::mat4 clipFromRelative{1};
     Frustum frustum{glm::mat4(1)};
-    float pixelsPerRadian = 700;  ///< near the middle of the image
+    float pixelsPerRadian = 700;  ///< near the middle of the image; of parallel views: pixels per metre
+    bool parallel = false;
 
     PassView(const glm::dvec3& eyePosition, const glm::mat4& clip, float pixels)
         : eye(eyePosition), clipFromRelative(clip), frustum(clip), pixelsPerRadian(pixels) {}
+
+    /// Metres by which what is drawn `distance` metres away may be off, for an error of `tolerance` pixels.
+    float allowedError(float tolerance, float distance) const {
+        return tolerance * (parallel ? 1.f : distance) / pixelsPerRadian;
+    }
 };
 
 }  // namespace app

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
 #include "app/render/CityPass.h"
 #include "app/render/CubeFaces.h"
 #include "app/render/FrameUniforms.h"
+#include "app/render/ShadowMap.h"
 #include "app/render/VehiclePass.h"
 #include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Texture.h"
@@ -27,6 +29,15 @@ constexpr float levelTolerance = 0.75f;
 
 float pixelsPerRadian(const View& view) {
     return 0.5f * static_cast<float>(view.size.y) * std::abs(view.clipFromView[1][1]);
+}
+
+/// Texels of about 0.12 m, as far as memory allows (8192: 128 MB).
+int shadowSize(const city::Aabb& bounds) {
+    if (bounds.empty()) return 1;
+    const glm::vec3 size = bounds.size();
+    int texels = 1024;
+    while (texels < 8192 && static_cast<float>(texels) * 0.12f < std::max(size.x, size.y)) texels *= 2;
+    return texels;
 }
 
 void setDrawState() {
@@ -50,6 +61,7 @@ struct SceneRenderer::Impl {
          const RenderOptions& renderOptions)
         : options(renderOptions),
           cityPass(city),
+          shadow(cityPass.geometry().bounds(), shadowSize(cityPass.geometry().bounds())),
           vehiclePass(models),
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
@@ -64,8 +76,19 @@ struct SceneRenderer::Impl {
         uniforms.clipFromRelative = view.clipFromRelative;
         uniforms.setEye(view.eye);
         uniforms.setLighting(lighting);
+        uniforms.setShadow(shadow.shadowFromWorld(), shadow.normalOffset());
         frameUniforms.replaceWith(uniforms);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameUniforms.name());
+        shadow.texture().bind(1);
+    }
+
+    void updateShadow() {
+        if (!options.shadows) return;
+        setDrawState();
+        shadow.update(lighting.sunDirection, [&](const PassView& view) {
+            setFrame(view);
+            cityPass.draw(view, PassTarget::depth, levelTolerance);
+        });
     }
 
     void drawSky(const PassView& view, PassTarget target) {
@@ -89,6 +112,7 @@ struct SceneRenderer::Impl {
 
     RenderOptions options;
     CityPass cityPass;
+    ShadowMap shadow;
     VehiclePass vehiclePass;
     gl::Buffer frameUniforms;
     gl::VertexArray emptyArray;
@@ -118,6 +142,8 @@ SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::prepare(const FrameScene& scene) {
     impl_->lighting = scene.lighting;
+    const float length = glm::length(scene.lighting.sunDirection);
+    impl_->lighting.sunDirection = length > 0 ? scene.lighting.sunDirection / length : glm::vec3(0, 0, 1);
     impl_->poses = scene.vehicles;
     impl_->signalColours = scene.signalColours;
 }
@@ -130,6 +156,7 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     my.requireViewTarget(view.size);
     const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
 
+    my.updateShadow();
     setDrawState();
     glBindFramebuffer(GL_FRAMEBUFFER, my.viewTarget.name());
     glViewport(0, 0, view.size.x, view.size.y);
@@ -165,6 +192,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
         my.cubeDepth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, target.faceSize, target.faceSize);
         my.cubeTarget.attach(GL_DEPTH_ATTACHMENT, my.cubeDepth.name());
     }
+    my.updateShadow();
     setDrawState();
     glBindFramebuffer(GL_FRAMEBUFFER, my.cubeTarget.name());
     glViewport(0, 0, target.faceSize, target.faceSize);

@@ -66,7 +66,7 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
         const glm::vec3 position(pose.position - view.eye);
         const glm::vec3 centre = position + rotation * model.centre;
         const float distance = std::max(glm::length(centre) - model.radius, 0.1f);
-        const float allowed = tolerance * distance / view.pixelsPerRadian;
+        const float allowed = view.allowedError(tolerance, distance);
         std::size_t level = 0;
         while (level + 1 < model.levels.size() && model.levels[level + 1].error <= allowed) ++level;
 

@@ -2,6 +2,7 @@
 #include "frame.glsl"
 #include "output.glsl"
 
+layout(binding = 1) uniform sampler2DShadow sunShadow;
 layout(binding = 0) uniform sampler2DArray patterns;  // square roots of albedos: linear enough to filter, quick to decode
 
 layout(location = 0) in vec2 texcoord;
@@ -18,7 +19,7 @@ void main() {
 #ifdef CUTOUT
     if (texel.a < 0.5) discard;
 #endif
-    vec3 radiance = texel.rgb * texel.rgb * (shaded + sunlit);
+    vec3 radiance = texel.rgb * texel.rgb * (shaded + sunlit * texture(sunShadow, shadowCoordinate));
 #ifdef CUBE
     writePixel(radiance, relative);
 #else

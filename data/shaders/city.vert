@@ -4,6 +4,7 @@
 #extension GL_ARB_shader_viewport_layer_array : enable
 #endif
 #include "frame.glsl"
+#include "shadow.glsl"
 
 struct MaterialEntry {
     vec4 tint;      // rgb albedo; w: layer of the pattern array
@@ -28,9 +29,11 @@ layout(location = 5) out vec3 relativeOut;
 
 layout(location = 0) out vec2 texcoordOut;
 layout(location = 1) flat out float layerOut;
+#ifndef DEPTH
 layout(location = 2) out vec3 shadedOut;   // tint times everything but the sun
 layout(location = 3) out vec3 sunlitOut;   // tint times the sun
 layout(location = 4) out vec3 shadowOut;
+#endif
 
 void main() {
 #ifdef INSTANCED
@@ -51,10 +54,12 @@ void main() {
 #endif
 #endif
     MaterialEntry m = materials[material];
-    vec3 albedo = m.tint.rgb * inversePi;
     texcoordOut = texcoord;
     layerOut = m.tint.w;
+#ifndef DEPTH
+    vec3 albedo = m.tint.rgb * inversePi;
     shadedOut = albedo * ambientIrradiance(n, open) + m.emission.rgb * frame.skyIrradiance.w;
     sunlitOut = albedo * frame.sunIrradiance.rgb * max(dot(n, frame.sunDirection.xyz), 0.0);
-    shadowOut = (frame.shadowFromWorld * vec4(world, 1.0)).xyz;
+    shadowOut = shadowCoordinate(world, n);
+#endif
 }

@@ -7,7 +7,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sunDirection;         // xyz; w: turbidity
     vec4 sunIrradiance;        // rgb; w: exposure
     vec4 skyIrradiance;        // rgb; w: 1 when lamps are lit
-    vec4 groundIrradiance;     // rgb
+    vec4 groundIrradiance;     // rgb; w: metres along the normal by which shadow lookups start
 } frame;
 
 const float inversePi = 0.31830989;

@@ -5,7 +5,7 @@
 layout(location = 0) in vec3 relative;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 diffuse;
-layout(location = 3) in vec2 coat;
+layout(location = 3) in vec3 coat;
 #ifdef REFLECTIVE
 layout(location = 4) flat in float mapLayer;
 layout(binding = 2) uniform samplerCubeArray localMap;
@@ -27,7 +27,7 @@ void main() {
     vec3 mirrored = mix(frame.groundIrradiance.rgb, frame.skyIrradiance.rgb, up) * (inversePi * 0.8);
     float glint = max(dot(reflected, frame.sunDirection.xyz), 0.0);
     glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint;
-    mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y);
+    mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y * coat.z);
 #endif
     vec3 radiance = diffuse * (1.0 - fresnel) + mirrored * fresnel;
 #ifdef CUBE

@@ -3,6 +3,7 @@
 #extension GL_ARB_shader_viewport_layer_array : enable
 #endif
 #include "frame.glsl"
+#include "shadow.glsl"
 
 // vehicles::Surface: albedo, reflectance at normal incidence (F0).
 const vec4 surfaces[9] = vec4[9](vec4(1.0, 1.0, 1.0, 0.04),       // paint: times the instance's colour
@@ -14,6 +15,8 @@ const vec4 surfaces[9] = vec4[9](vec4(1.0, 1.0, 1.0, 0.04),       // paint: time
                                  vec4(0.30, 0.012, 0.010, 0.06),   // tail lamp
                                  vec4(0.016, 0.016, 0.017, 0.02),  // trim
                                  vec4(0.04, 0.038, 0.036, 0.0));   // interior
+
+layout(binding = 1) uniform sampler2DShadow sunShadow;
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
@@ -27,7 +30,7 @@ layout(location = 7) in float mapLayer;
 layout(location = 0) out vec3 relativeOut;
 layout(location = 1) out vec3 normalOut;
 layout(location = 2) out vec3 diffuseOut;   // outgoing radiance of the layer under the coat
-layout(location = 3) out vec2 coatOut;      // F0; 1: a surface with a polished coat
+layout(location = 3) out vec3 coatOut;      // F0; 1: a surface with a polished coat; sun
 #ifdef REFLECTIVE
 layout(location = 4) flat out float mapLayerOut;
 #endif
@@ -44,14 +47,17 @@ void main() {
 #endif
     vec4 s = surfaces[surface];
     vec3 albedo = surface == 0u ? paint.rgb : s.rgb;
-    vec3 light = ambientIrradiance(n, 0.85) + frame.sunIrradiance.rgb * max(dot(n, frame.sunDirection.xyz), 0.0);
+    // The sun's shadow is looked up per vertex: vertices are dense, and cars move from light to shade in a moment.
+    vec3 world = relative + frame.eyeHigh.xyz + frame.eyeLow.xyz;
+    float sun = texture(sunShadow, shadowCoordinate(world, n));
+    vec3 light = ambientIrradiance(n, 0.85) + frame.sunIrradiance.rgb * (sun * max(dot(n, frame.sunDirection.xyz), 0.0));
     vec3 emission = vec3(0.0);
     if (surface == 5u) emission = vec3(6.0, 5.6, 5.0) * frame.skyIrradiance.w;
     if (surface == 6u) emission = vec3(1.6, 0.05, 0.03) * (1.4 * paint.w + 0.35 * frame.skyIrradiance.w);
     relativeOut = relative;
     normalOut = n;
     diffuseOut = albedo * light * inversePi + emission;
-    coatOut = vec2(s.w, s.w >= 0.03 ? 1.0 : 0.0);
+    coatOut = vec3(s.w, s.w >= 0.03 ? 1.0 : 0.0, sun);
 #ifdef REFLECTIVE
     mapLayerOut = mapLayer;
 #endif
