@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -28,7 +29,35 @@ Polyline curveBetween(const NetworkDraft& draft, std::uint32_t from, std::uint32
     const Lane& b = draft.roads.lanes[to];
     const glm::dvec3 u = endDirection(a.centreLine);
     const glm::dvec3 v = startDirection(b.centreLine);
-    return smoothCurve(glm::dvec3(a.centreLine.back()), u, glm::dvec3(b.centreLine.front()), v, curveSpacing);
+    const glm::dvec3 p(a.centreLine.back());
+    const glm::dvec3 q(b.centreLine.front());
+    const double angle = turnAngle(u, v);
+    const double cross = u.x * v.y - u.y * v.x;
+    if (angle < -0.5 && cross < -0.2) {
+        // Turning right: straight up to the corner, then around it at the kerb's radius; a wider arc would
+        // cut across the pavement.
+        const glm::dvec3 d = q - p;
+        const double ahead = (d.x * v.y - d.y * v.x) / cross;
+        const double behind = -(d.x * u.y - d.y * u.x) / cross;
+        const double radius = kerbRadius + 0.5 * static_cast<double>(std::min(a.width, b.width));
+        const double tangent = std::min({ahead, behind, radius * std::tan(-0.5 * angle)});
+        if (tangent > 1) {
+            Polyline line{p};
+            const auto straight = [&](const glm::dvec3& target) {
+                const glm::dvec3 start = line.back();
+                const int n =
+                    std::max(1, static_cast<int>(std::ceil(glm::distance(start, target) / curveSpacing)));
+                for (int i = 1; i <= n; ++i)
+                    line.push_back(glm::mix(start, target, static_cast<double>(i) / n));
+            };
+            straight(p + u * (ahead - tangent));
+            const Polyline arc = smoothCurve(line.back(), u, q - v * (behind - tangent), v, curveSpacing);
+            line.insert(line.end(), arc.begin(), arc.end());
+            straight(q);
+            return withoutDuplicates(line, 1e-3);
+        }
+    }
+    return smoothCurve(p, u, q, v, curveSpacing);
 }
 
 /// A turning bulb: out to the right, around to the left, back. As large as the room ahead of the lane's end

@@ -11,7 +11,6 @@ namespace city {
 
 namespace {
 
-constexpr double cornerSetback = 3.0;  // metres that a kerb corner of that radius takes from each street
 constexpr double crossingDepth = 4.5;  // zebra of 3 m with half a metre and a metre of free asphalt beside it
 constexpr double stopSetback = 0.8;    // from the junction's area to the stop line where there is no crossing
 constexpr double longestCut = 24.0;    // streets that part at an acute angle overlap for ever; they stop here
@@ -74,7 +73,7 @@ void cutArms(StreetLayout& layout, bool withCrossings) {
                 const Street::LaneStrip* widest = street.lanes.empty() ? nullptr : &street.lanes.front();
                 const bool zebra = withCrossings && street.cars && widest != nullptr &&
                                    (street.pavement > 0 || junction.signalled) && !street.ring;
-                street.cut[end] = cut + cornerSetback;
+                street.cut[end] = cut + kerbRadius;
                 street.crossing[end] = zebra;
                 street.stop[end] = street.cut[end] + (zebra ? crossingDepth : stopSetback);
             }

@@ -11,6 +11,9 @@
 
 namespace city {
 
+/// Radius of the kerb at corners, metres: what a turning car with its outer lane beside it can follow.
+inline constexpr double kerbRadius = 4.5;
+
 /// A street between two junctions with its cross-section and where its lanes end: what lanes and surfaces are
 /// made from, so that both agree. Offsets are metres to the right of the axis, which is the middle of the
 /// carriageway.
