@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands/Commands.h"
+#include "app/commands/Program.h"
 #include "app/report/Progress.h"
 
 int main(int argc, char** argv) {

@@ -6,13 +6,10 @@
 
 namespace app {
 
+Command tourCommand();
 Command infoCommand();
 
 /// Every command of the program, in the order in which --help lists them.
 std::vector<Command> allCommands();
-
-/// The whole program behind main(): finds the command, parses, runs it. Returns the exit code; lets
-/// exceptions of the command pass.
-int runProgram(const std::vector<Command>& commands, std::span<const std::string> arguments);
 
 }  // namespace app

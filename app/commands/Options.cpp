@@ -44,8 +44,17 @@ CLI::Validator wholeBetween(std::uint64_t low, std::uint64_t high) {
         "");
 }
 
-template <typename Enum, std::size_t count>
-void addNamed(CLI::App& parser, const std::string& option, Enum& target,
+template <typename T>
+struct EnumOf {
+    using Type = T;
+};
+template <typename T>
+struct EnumOf<std::optional<T>> {
+    using Type = T;
+};
+
+template <typename Target, std::size_t count>
+void addNamed(CLI::App& parser, const std::string& option, Target& target,
               const std::array<std::string_view, count>& names, const std::string& description) {
     std::string list;
     for (std::string_view name : names) list += (list.empty() ? "" : " ") + std::string(name);
@@ -53,7 +62,7 @@ void addNamed(CLI::App& parser, const std::string& option, Enum& target,
         .add_option_function<std::string>(
             option,
             [&target, names, option, list](const std::string& text) {
-                const auto value = fromName<Enum>(names, text);
+                const auto value = fromName<typename EnumOf<Target>::Type>(names, text);
                 if (!value) {
                     const std::vector<std::string> all(names.begin(), names.end());
                     const auto meant = suggestion(text, all);
@@ -164,8 +173,15 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
             ->capture_default_str();
     if (groups & jsonOptions)
         parser.add_option("--json", o.json, "write the results to this file")->type_name("FILE");
-    if (groups & displayOptions)
+    if (groups & displayOptions) {
         parser.add_flag("--offscreen", o.offscreen, "no window, even where there is a display");
+        addNamed(parser, "--camera", o.camera, cameraModeNames,
+                 "camera at the start (default: off screen, shots of a car and of the tour in turn)");
+        parser.add_option("--stills", o.stills, "pictures to take along a drive without a window")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(0, 10000));
+    }
     if (groups & exportOptions) {
         parser.add_option("--city", o.exportCity, "write the city to this file")->type_name("FILE.glb");
         parser.add_option("--car", o.exportCar, "write the first vehicle model to this file")

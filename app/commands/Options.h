@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/frame/CameraRig.h"
 #include "app/frame/ReflectionMethod.h"
 
 namespace app {
@@ -37,6 +38,8 @@ struct Options {
     std::optional<std::uint32_t> frames;
     std::uint32_t fps = 30;
     bool offscreen = false;
+    std::optional<CameraMode> camera;  ///< nothing: shots of both kinds in turn
+    std::uint32_t stills = 6;
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
 
@@ -53,7 +56,7 @@ enum OptionGroup : unsigned {
     outOptions = 1u << 4,         ///< --out
     jsonOptions = 1u << 5,        ///< --json
     durationOptions = 1u << 6,    ///< --seconds --frames --fps
-    displayOptions = 1u << 7,     ///< --offscreen
+    displayOptions = 1u << 7,     ///< --offscreen --camera --stills
     exportOptions = 1u << 8,      ///< --city --car --drive as files to write
     cityIsOptional = 1u << 9,     ///< no CITY means none, not the default
 };

@@ -11,8 +11,8 @@ namespace app {
 
 void writePng(const Picture& picture, const std::filesystem::path& file) {
     const auto needed =
-        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 3;
-    if (picture.width < 1 || picture.height < 1 || picture.rgb.size() != needed)
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 4;
+    if (picture.width < 1 || picture.height < 1 || picture.rgba.size() != needed)
         throw std::runtime_error("there are no pixels to write to '" + file.string() +
                                  "'; draw something first.");
     AsideFile aside(file);
@@ -26,7 +26,7 @@ void writePng(const Picture& picture, const std::filesystem::path& file) {
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("compression", "zip:3");  // a third of the default's time for a few percent more bytes
     if (!output->open(aside.aside().string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, picture.rgb.data()) || !output->close())
+        !output->write_image(OIIO::TypeDesc::UINT8, picture.rgba.data(), 4) || !output->close())
         fail(output->geterror());
     aside.commit();
 }

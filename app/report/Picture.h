@@ -6,11 +6,11 @@
 
 namespace app {
 
-/// sRGB-encoded pixels, 8 bit RGB, top row first.
+/// sRGB-encoded pixels, 8 bit RGBA, top row first. Alpha is ignored.
 struct Picture {
     int width = 0;
     int height = 0;
-    std::vector<std::uint8_t> rgb;  ///< width * height * 3
+    std::vector<std::uint8_t> rgba;  ///< width * height * 4
 };
 
 /// Writes a PNG aside, then renames. Throws std::runtime_error naming the file and the cause, also for an

@@ -54,7 +54,7 @@ void VideoWriter::Impl::start(int framesPerSecond) {
                                    "-loglevel", "error",
                                    "-y",        "-f",
                                    "rawvideo",  "-pixel_format",
-                                   "rgb24",     "-video_size",
+                                   "rgba",     "-video_size",
                                    size,        "-framerate",
                                    rate,        "-i",
                                    "pipe:0",    "-an",
@@ -131,11 +131,12 @@ VideoWriter::~VideoWriter() {
 }
 
 void VideoWriter::add(const Picture& picture) {
-    if (picture.width != impl_->width || picture.height != impl_->height)
+    if (picture.width != impl_->width || picture.height != impl_->height ||
+        picture.rgba.size() != static_cast<std::size_t>(impl_->width) * static_cast<std::size_t>(impl_->height) * 4)
         throw std::runtime_error("a picture of another size cannot join the video '" +
                                  impl_->file.file().string() + "'.");
-    const std::uint8_t* data = picture.rgb.data();
-    std::size_t left = picture.rgb.size();
+    const std::uint8_t* data = picture.rgba.data();
+    std::size_t left = picture.rgba.size();
     while (left > 0) {
         const ssize_t n = write(impl_->pipe, data, left);
         if (n < 0 && errno == EINTR) continue;

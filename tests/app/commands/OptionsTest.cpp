@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/commands/Commands.h"
+#include "app/commands/Program.h"
 
 namespace app {
 namespace {

@@ -131,8 +131,7 @@ Picture gradient(int width, int height, int shift) {
     Picture picture{width, height, {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c)
-                picture.rgb.push_back(static_cast<std::uint8_t>((x * 3 + y * 2 + c * 40 + shift) & 255));
+            for (int c = 0; c < 4; ++c) picture.rgba.push_back(static_cast<std::uint8_t>((x * 3 + y * 2 + c * 40 + shift) & 255));
     return picture;
 }
 
@@ -149,9 +148,9 @@ TEST(PictureTest, emptyPicturesAndBadPlacesAreRefused) {
     ASSERT_EQ(input->spec().width, 33);
     ASSERT_EQ(input->spec().height, 17);
     ASSERT_EQ(input->spec().nchannels, 3);
-    std::vector<std::uint8_t> read(written.rgb.size());
+    std::vector<std::uint8_t> read(33 * 17 * 3);
     ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, read.data()));
-    EXPECT_EQ(read, written.rgb);
+    for (std::size_t i = 0; i < read.size(); ++i) ASSERT_EQ(read[i], written.rgba[i / 3 * 4 + i % 3]);
 }
 
 /// What ffprobe says about a file: "width,height,frames".

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "app/commands/LoadScene.h"
+#include "app/frame/AssembleFrame.h"
+#include "app/render/SceneRenderer.h"
+
+namespace app {
+
+/// What a drive can be asked to change while it runs.
+struct DriveSettings {
+    ReflectionMethod method = ReflectionMethod::mem;
+    MemVariant mem = MemVariant::ours;
+    Quality quality = Quality::medium;
+    std::uint32_t cars = 60;
+    double hour = 15;
+};
+
+/// What one frame took and did.
+struct FrameStats {
+    double frameMs = 0;       ///< reflections and drawing, until OpenGL had finished
+    double reflectionMs = 0;  ///< the reflections' share
+    std::uint32_t mapsUpdated = 0;
+    std::uint64_t mapBytes = 0;
+    RenderCounters drawn;
+};
+
+/// The one way of a frame: traffic -> FrameScene -> reflections -> picture. Needs an OpenGL context current
+/// from construction to destruction; keeps a reference to the scene.
+class Drive {
+  public:
+    Drive(const Scene& scene, const Options& options);
+
+    /// Simulates on, in the traffic's fixed steps; what is left of a step is kept for the next call.
+    void advance(double seconds);
+    FrameStats draw(const View& view, std::uint32_t framebuffer);
+
+    const DriveSettings& settings() const { return settings_; }
+    /// Takes over what changed: other cars start the traffic anew, other quality the renderer.
+    void change(const DriveSettings& settings);
+
+    const vehicles::Traffic& traffic() const { return traffic_; }
+    const FrameScene& frame() const { return frame_; }
+
+  private:
+    RenderOptions renderOptions() const;
+
+    const Scene* scene_;
+    std::uint64_t seed_;
+    DriveSettings settings_;
+    vehicles::Traffic traffic_;
+    std::unique_ptr<SceneRenderer> renderer_;
+    Lighting lighting_;
+    FrameScene frame_;
+    double lead_ = 0;  ///< seconds asked for and not yet simulated
+};
+
+}  // namespace app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "app/commands/Options.h"
+#include "app/frame/Lighting.h"
+#include "city/model/CityModel.h"
+#include "vehicles/models/VehicleModel.h"
+#include "vehicles/traffic/Traffic.h"
+
+namespace app {
+
+/// The city and the vehicles that may drive in it.
+struct Scene {
+    city::CityModel city;
+    std::vector<vehicles::VehicleModel> models;
+    std::vector<vehicles::VehicleKind> kinds;  ///< kinds[i] speaks of models[i]
+    Lighting lighting;
+};
+
+/// The city that the options name: built in or from a file, with its importer's notes on stderr. Throws
+/// std::runtime_error or std::invalid_argument, one sentence, when it cannot be had.
+city::CityModel loadCityOf(const Options& options);
+
+/// The whole scene. `--car` takes the place of every model but the trams.
+Scene loadScene(const Options& options);
+
+/// Traffic in a scene, which must outlive it: `cars` cars and as many trams as the tram lanes are long (one
+/// every 400 m), after a quarter of a minute's driving, so that nobody stands where he was put. Says on
+/// stderr when fewer cars fit.
+vehicles::Traffic startTraffic(const Scene& scene, std::uint64_t seed, std::uint32_t cars);
+
+/// Length of a lane's centre line, metres.
+double laneLength(const city::Lane& lane);
+
+}  // namespace app

@@ -1,0 +1,51 @@
+#include "app/commands/TourReport.h"
+
+#include <ostream>
+#include <utility>
+
+#include "app/commands/Version.h"
+#include "app/report/ResultFile.h"
+#include "app/report/Table.h"
+#include "app/report/Timing.h"
+
+namespace app {
+
+TourReport::TourReport(const Options& options, std::string renderer)
+    : options_(options), renderer_(std::move(renderer)) {}
+
+void TourReport::add(const FrameStats& stats) {
+    frameMs_.push_back(stats.frameMs);
+    reflectionMs_.push_back(stats.reflectionMs);
+    mapsUpdated_ += stats.mapsUpdated;
+    mapBytes_ = std::max(mapBytes_, stats.mapBytes);
+}
+
+void TourReport::finish(bool partial, std::ostream& out) const {
+    const Timing frame = timingOf(frameMs_);
+    const Timing reflection = timingOf(reflectionMs_);
+    const double mapsPerFrame =
+        frame.n == 0 ? 0 : static_cast<double>(mapsUpdated_) / static_cast<double>(frame.n);
+    const auto row = [](const std::string& name, const Timing& t) {
+        return std::vector<std::string>{name, fixed(t.min, 1), fixed(t.median, 1), fixed(t.max, 1)};
+    };
+    out << formatTable({{std::to_string(frame.n) + " frames, " + std::string(nameOf(options_.method)), "min",
+                         "median", "max"},
+                        row("frame, ms", frame),
+                        row("reflections, ms", reflection)})
+        << "maps rebuilt a frame: " << fixed(mapsPerFrame, 1) << "\n"
+        << "memory of maps:       " << byteSize(static_cast<double>(mapBytes_)) << "\n";
+    if (!options_.json) return;
+    ResultFile results("tour", std::string(programVersion), renderer_);
+    results.add({{"method", nameOf(options_.method)},
+                 {"city", options_.city},
+                 {"cars", options_.cars.front()},
+                 {"width", options_.resolution.x},
+                 {"height", options_.resolution.y},
+                 {"frame_ms", toJson(frame)},
+                 {"reflection_ms", toJson(reflection)},
+                 {"maps_updated_per_frame", mapsPerFrame},
+                 {"texture_bytes", mapBytes_}});
+    results.write(*options_.json, partial);
+}
+
+}  // namespace app

@@ -1,0 +1,23 @@
+#include "app/frame/AssembleFrame.h"
+
+#include <utility>
+
+namespace app {
+
+FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& traffic,
+                         const Lighting& lighting, std::vector<View> views) {
+    FrameScene scene;
+    scene.time = traffic.time();
+    scene.views = std::move(views);
+    scene.vehicles.assign(traffic.poses().begin(), traffic.poses().end());
+    scene.signalColours.reserve(city.signalHeads.size());
+    for (const city::SignalHead& head : city.signalHeads) {
+        const bool known = head.junction < city.roads.junctions.size();
+        scene.signalColours.push_back(known ? traffic.signal(head.junction, head.signalGroup)
+                                            : vehicles::SignalColour::red);
+    }
+    scene.lighting = lighting;
+    return scene;
+}
+
+}  // namespace app

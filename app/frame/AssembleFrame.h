@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/frame/FrameScene.h"
+#include "city/model/CityModel.h"
+
+namespace app {
+
+/// What is seen now: the traffic's vehicles and signals, under a light, in these views. Cost: vehicles +
+/// signal heads.
+FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& traffic,
+                         const Lighting& lighting, std::vector<View> views);
+
+}  // namespace app
