@@ -25,16 +25,7 @@ struct Axis {
     /// The border through which the ray came into cell k.
     int entryPlane(int k) const { return direction > 0 ? k : k + 1; }
 
-    /// The start's cell under the half-open rule: -1 below the grid, `cells` above it.
-    int startCell() const {
-        if (start < plane(0)) return -1;
-        if (start >= plane(cells)) return cells;
-        const double guess = std::floor((start - origin) / cellSize);
-        int k = guess < 0 ? 0 : guess > cells - 1 ? cells - 1 : static_cast<int>(guess);
-        while (start < plane(k)) --k;
-        while (start >= plane(k + 1)) ++k;
-        return k;
-    }
+    int startCell = 0;  ///< under the half-open rule: -1 below the grid, `cells` above it
 };
 
 /// Sign of (parameter at a's border ka) - (parameter at b's border kb); both directions are non-zero.
@@ -47,7 +38,7 @@ int compareParameters(const Axis& a, int ka, const Axis& b, int kb) {
 /// The cell of `axis` in which the ray is when it crosses border k of `other`. Steps of `axis` at the very
 /// same parameter have been made already if `ownStepsFirst`. -1 or `cells` when that is outside the grid.
 int cellAtCrossing(const Axis& axis, const Axis& other, int k, bool ownStepsFirst) {
-    const int from = axis.startCell();
+    const int from = axis.startCell;
     if (axis.direction == 0) return from;
     const auto passed = [&](int border) {
         const int order = compareParameters(axis, border, other, k);
@@ -114,10 +105,12 @@ float entryParameter(const TracedGrid& grid, const city::Ray& ray, EntryFace fac
 
 TraceResult exactWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
     const TraceResult miss{TraceStatus::miss, std::numeric_limits<float>::infinity(), glm::ivec2(-1)};
-    const Axis x{grid.origin.x, grid.cellSize, grid.width, ray.origin.x, ray.direction.x};
-    const Axis y{grid.origin.y, grid.cellSize, grid.height, ray.origin.y, ray.direction.y};
-    int i = x.startCell();
-    int j = y.startCell();
+    const Axis x{grid.origin.x, grid.cellSize,   grid.width,
+                 ray.origin.x,  ray.direction.x, grid.cellX(ray.origin.x)};
+    const Axis y{grid.origin.y, grid.cellSize,   grid.height,
+                 ray.origin.y,  ray.direction.y, grid.cellY(ray.origin.y)};
+    int i = x.startCell;
+    int j = y.startCell;
     EntryFace face = EntryFace::start;
 
     const auto outside = [](const Axis& axis, int k) { return k < 0 || k >= axis.cells; };

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "reflection/tracing/ExactWalk.h"
+#include "reflection/tracing/LeapWalk.h"
 #include "reflection/tracing/TracedGrid.h"
 
 namespace reflection {
@@ -46,6 +46,7 @@ GridTracer::GridTracer(const city::Heightfield& field) {
     grid->width = field.width();
     grid->height = field.height();
     grid->cellSize = field.cellSize();
+    grid->perCell = 1 / grid->cellSize;
     grid->origin = origin;
     grid->columns.assign(field.cells().begin(), field.cells().end());
     grid->top = -std::numeric_limits<float>::infinity();
@@ -53,9 +54,20 @@ GridTracer::GridTracer(const city::Heightfield& field) {
     for (float& h : grid->columns) {
         if (std::isnan(h)) h = -std::numeric_limits<float>::infinity();
         grid->top = std::max(grid->top, h);
-        if (std::isfinite(h)) bottom = std::min(bottom, h);
+        if (std::isfinite(h)) {
+            bottom = std::min(bottom, h);
+            grid->largest = std::max(grid->largest, std::abs(h));
+        }
     }
     grid->bottom = std::isfinite(bottom) ? bottom : 0;
+    // Borders that rounding shifts by no more than 2^-30 of a cell, heights far from overflow, indices of 31
+    // bits.
+    const double farthest =
+        std::max({std::abs(origin.x), std::abs(origin.y), std::abs(grid->planeX(grid->width)),
+                  std::abs(grid->planeY(grid->height))});
+    grid->leaps = farthest * 0x1p-52 <= grid->cellSize * 0x1p-30 && grid->largest <= leapHighest &&
+                  grid->cellSize >= 0x1p-20 && grid->cellSize <= 0x1p20 && grid->columns.size() < 0x7fffffff;
+    if (grid->leaps) grid->open = findOpenRectangles(*grid);
     grid_ = std::move(grid);
 }
 
@@ -63,10 +75,10 @@ TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
     if (!valid(ray.origin, ray.direction))
         return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
-    return exactWalk(*grid_, ray,
-                     tMax < std::numeric_limits<float>::max() || std::isnan(tMax)
-                         ? tMax
-                         : std::numeric_limits<float>::max());
+    return leapWalk(*grid_, ray,
+                    tMax < std::numeric_limits<float>::max() || std::isnan(tMax)
+                        ? tMax
+                        : std::numeric_limits<float>::max());
 }
 
 bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {

@@ -1,0 +1,146 @@
+#include "reflection/tracing/OpenRectangles.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reflection/tracing/TracedGrid.h"
+
+namespace reflection {
+
+namespace {
+
+/// How much higher than its corner cell a rectangle's columns may be: kerbs and low steps (0.15 m) must not
+/// end it, but a ray that sinks below the level walks cell by cell.
+constexpr float bandMetres = 0.25f;
+constexpr float bandPerCellSize = 0.25f;
+/// Longest leap in cells. Farther ones are rare in streets, and the search below looks at as many rows.
+constexpr int longest = 64;
+constexpr int highestLevel = 65534;
+constexpr int endless = 65535;  ///< a column without a top
+
+/// Level of each cell: the lowest whose height, as the walks compute it, is not below the column.
+std::vector<std::uint16_t> levelsOf(const TracedGrid& grid, const OpenRectangles& scale) {
+    std::vector<std::uint16_t> levels(grid.columns.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, levels.size(), 65536), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k) {
+            const float h = grid.columns[k];
+            if (h == std::numeric_limits<float>::infinity()) {
+                levels[k] = endless;
+                continue;
+            }
+            int level = 0;
+            if (h > scale.base) {
+                level = static_cast<int>(
+                    std::min((h - scale.base) / scale.step, static_cast<float>(highestLevel)));
+                while (level > 0 && scale.levelHeight(static_cast<std::uint32_t>(level - 1)) >= h) --level;
+                while (level < endless && scale.levelHeight(static_cast<std::uint32_t>(level)) < h) ++level;
+            }
+            levels[k] = static_cast<std::uint16_t>(level);
+        }
+    });
+    return levels;
+}
+
+/// One row's runs: from each cell onwards in the direction of x, how many cells stay within the band, and
+/// their highest.
+struct Run {
+    std::uint8_t length;
+    std::uint16_t highest;
+};
+
+void findRuns(const std::uint16_t* levels, int width, int step, int band, Run* runs) {
+    const int first = step > 0 ? width - 1 : 0;
+    for (int n = 0, i = first; n < width; ++n, i -= step) {
+        const int limit = levels[i] + band;
+        int length = 1;
+        int highest = levels[i];
+        const int available = std::min(n + 1, longest);
+        while (length < available) {
+            const int k = i + step * length;
+            if (levels[k] > limit) break;
+            if (runs[k].highest <= limit) {  // the whole run from there fits
+                highest = std::max<int>(highest, runs[k].highest);
+                length += runs[k].length;
+            } else {
+                highest = std::max<int>(highest, levels[k]);
+                ++length;
+            }
+        }
+        runs[i] = {static_cast<std::uint8_t>(std::min(length, available)),
+                   static_cast<std::uint16_t>(highest)};
+    }
+}
+
+}  // namespace
+
+OpenRectangles findOpenRectangles(const TracedGrid& grid) {
+    OpenRectangles result;
+    float top = grid.bottom;
+    for (float h : grid.columns)
+        if (std::isfinite(h)) top = std::max(top, h);
+    result.base = grid.bottom;
+    // A little coarser than range / highestLevel, so that the top fits in spite of rounding.
+    result.step = std::max((top - grid.bottom) / 65000.0f, 1e-4f);
+    while (result.levelHeight(highestLevel) < top) result.step *= 1.01f;
+
+    const std::vector<std::uint16_t> levels = levelsOf(grid, result);
+    const int width = grid.width;
+    const int height = grid.height;
+    const float bandHeight = std::max(bandMetres, bandPerCellSize * static_cast<float>(grid.cellSize));
+    const int band = static_cast<int>(std::min(bandHeight / result.step, 60000.0f));
+    std::vector<Run> runs(levels.size());
+
+    for (int q = 0; q < 4; ++q) {
+        const int stepX = (q & 1) != 0 ? -1 : 1;
+        const int stepY = (q & 2) != 0 ? -1 : 1;
+        std::vector<OpenRectangles::Entry>& entries = result.quadrant[static_cast<std::size_t>(q)];
+        entries.resize(levels.size());
+        tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
+            for (int j = range.begin(); j != range.end(); ++j)
+                findRuns(&levels[grid.index(0, j)], width, stepX, band, &runs[grid.index(0, j)]);
+        });
+        tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
+            for (int j = range.begin(); j != range.end(); ++j) {
+                const int rows = std::min(longest, stepY > 0 ? height - j : j + 1);
+                for (int i = 0; i < width; ++i) {
+                    const std::size_t corner = grid.index(i, j);
+                    if (levels[corner] == endless) continue;  // entry 0: no leap
+                    const int limit = levels[corner] + band;
+                    // Of all rectangles in the staircase of runs, the one with the longest leap averaged over
+                    // directions: w h / (w + h) ranks them nearly as the integral of min(w / cos, h / sin)
+                    // does.
+                    int narrowest = longest;
+                    int highest = 0;
+                    int bestWidth = 1, bestHeight = 1, bestLevel = levels[corner];
+                    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(stepY) * width;
+                    std::ptrdiff_t at = static_cast<std::ptrdiff_t>(corner);
+                    for (int k = 1; k <= rows; ++k, at += stride) {
+                        const std::size_t here = static_cast<std::size_t>(at);
+                        if (levels[here] > limit || runs[here].highest >= endless) break;
+                        narrowest = std::min<int>(narrowest, runs[here].length);
+                        highest = std::max<int>(highest, runs[here].highest);
+                        const int best = bestWidth * bestHeight;
+                        const int bestSum = bestWidth + bestHeight;
+                        if (narrowest * k * bestSum > best * (narrowest + k)) {
+                            bestWidth = narrowest;
+                            bestHeight = k;
+                            bestLevel = highest;
+                        }
+                        // Even with all rows left, nothing this narrow can win any more.
+                        if (narrowest * rows * bestSum <= best * (narrowest + rows)) break;
+                    }
+                    entries[corner] = static_cast<OpenRectangles::Entry>(bestWidth) |
+                                      static_cast<OpenRectangles::Entry>(bestHeight) << 8 |
+                                      static_cast<OpenRectangles::Entry>(bestLevel) << 16;
+                }
+            }
+        });
+    }
+    return result;
+}
+
+}  // namespace reflection
