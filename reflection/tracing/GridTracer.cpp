@@ -29,12 +29,6 @@ void requireDistinctBorders(double origin, double cellSize, int cells) {
     }
 }
 
-bool valid(const glm::vec3& origin, const glm::vec3& direction) {
-    return std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z) &&
-           std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
-           direction != glm::vec3(0);
-}
-
 }  // namespace
 
 GridTracer::GridTracer(const city::Heightfield& field) {
@@ -66,13 +60,13 @@ GridTracer::GridTracer(const city::Heightfield& field) {
         std::max({std::abs(origin.x), std::abs(origin.y), std::abs(grid->planeX(grid->width)),
                   std::abs(grid->planeY(grid->height))});
     grid->leaps = farthest * 0x1p-52 <= grid->cellSize * 0x1p-30 && grid->largest <= leapHighest &&
-                  grid->cellSize >= 0x1p-20 && grid->cellSize <= 0x1p20 && grid->columns.size() < 0x7fffffff;
+                  grid->cellSize >= 0x1p-20 && grid->cellSize <= 0x1p20 && grid->columns.size() < 0x1fffffff;
     if (grid->leaps) grid->open = findOpenRectangles(*grid);
     grid_ = std::move(grid);
 }
 
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
-    if (!valid(ray.origin, ray.direction))
+    if (!validRay(ray))
         return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
     return leapWalk(*grid_, ray,
@@ -93,7 +87,7 @@ bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
 void GridTracer::traceFan(glm::vec3 origin, std::span<const float> dx, std::span<const float> dy,
                           std::span<const float> dz, std::span<float> t) const {
     const std::size_t count = std::min({dx.size(), dy.size(), dz.size(), t.size()});
-    for (std::size_t k = 0; k < count; ++k) t[k] = trace({origin, {dx[k], dy[k], dz[k]}}).t;
+    leapFan(*grid_, origin, dx.first(count), dy.first(count), dz.first(count), t.first(count));
 }
 
 }  // namespace reflection

@@ -6,6 +6,18 @@
 
 namespace reflection {
 
+bool validRay(const city::Ray& ray) {
+    const glm::vec3& o = ray.origin;
+    const glm::vec3& d = ray.direction;
+    return std::isfinite(o.x) && std::isfinite(o.y) && std::isfinite(o.z) && std::isfinite(d.x) &&
+           std::isfinite(d.y) && std::isfinite(d.z) && d != glm::vec3(0);
+}
+
+float exactAnswer(const TracedGrid& grid, const city::Ray& ray) {
+    if (!validRay(ray)) return std::numeric_limits<float>::quiet_NaN();
+    return exactWalk(grid, ray, std::numeric_limits<float>::max()).t;
+}
+
 TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
     if (!grid.leaps) return exactWalk(grid, ray, tMax);
     const int i0 = grid.cellX(ray.origin.x);
@@ -47,7 +59,8 @@ TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
     const float tEnd = tMax * static_cast<float>(grid.perCell) * 1.00001f;
 
     const OpenRectangles& open = grid.open;
-    const OpenRectangles::Entry* entries = open.quadrant[(west ? 1u : 0u) | (south ? 2u : 0u)].data();
+    const OpenRectangles::Entry* entries =
+        open.entries.data() + ((west ? 1u : 0u) + (south ? 2u : 0u)) * grid.columns.size();
     const float* columns = grid.columns.data();
     const std::ptrdiff_t strideA = west ? -1 : 1;
     const std::ptrdiff_t strideB = south ? -static_cast<std::ptrdiff_t>(grid.width) : grid.width;

@@ -41,6 +41,12 @@ constexpr float leapHighest = 0x1p60f;  ///< of |oz| and |dz|
 /// Walks `ray`, which must be valid. Cost: about 20 ns in a street.
 TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax);
 
+/// Is every component finite and the direction not zero?
+bool validRay(const city::Ray& ray);
+
+/// The exact walk's t for any ray: NaN for an invalid one, +infinity on a miss.
+float exactAnswer(const TracedGrid& grid, const city::Ray& ray);
+
 /// Rays of one origin, several at a time, with the widest vectors that the processor has. The spans have one
 /// length.
 void leapFan(const TracedGrid& grid, const glm::vec3& origin, std::span<const float> dx,

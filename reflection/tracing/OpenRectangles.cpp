@@ -93,12 +93,12 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     const float bandHeight = std::max(bandMetres, bandPerCellSize * static_cast<float>(grid.cellSize));
     const int band = static_cast<int>(std::min(bandHeight / result.step, 60000.0f));
     std::vector<Run> runs(levels.size());
+    result.entries.resize(4 * levels.size());
 
     for (int q = 0; q < 4; ++q) {
         const int stepX = (q & 1) != 0 ? -1 : 1;
         const int stepY = (q & 2) != 0 ? -1 : 1;
-        std::vector<OpenRectangles::Entry>& entries = result.quadrant[static_cast<std::size_t>(q)];
-        entries.resize(levels.size());
+        OpenRectangles::Entry* entries = result.entries.data() + static_cast<std::size_t>(q) * levels.size();
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
             for (int j = range.begin(); j != range.end(); ++j)
                 findRuns(&levels[grid.index(0, j)], width, stepX, band, &runs[grid.index(0, j)]);

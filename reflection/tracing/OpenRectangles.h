@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +18,9 @@ struct OpenRectangles {
 
     float base = 0;  ///< metres
     float step = 1;  ///< metres a level
-    /// Indexed by quadrant (bit 0: towards -x, bit 1: towards -y), then as the grid's columns.
-    std::array<std::vector<Entry>, 4> quadrant;
+    /// Four times the grid's cells: one after the other the quadrants (bit 0: towards -x, bit 1: towards -y),
+    /// each in the order of the grid's columns.
+    std::vector<Entry> entries;
 
     /// The level's height in metres, as the walks compute it: never below any column of the rectangle.
     float levelHeight(std::uint32_t level) const { return base + static_cast<float>(level) * step; }
