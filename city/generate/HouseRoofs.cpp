@@ -50,15 +50,20 @@ std::vector<glm::vec3> shrunk(const Lot& lot, float factor, float z) {
 
 void appendParapet(const Lot& lot, const HouseDesign& design, const Palette& palette, float eaves,
                    float height, Mesh& mesh) {
-    std::vector<glm::vec2> ring;
-    for (std::size_t i = 0; i < lot.corners.size(); ++i) {
-        const glm::vec2 a = lot.corners[i].position, b = lot.corners[(i + 1) % lot.corners.size()].position;
-        ring.push_back(a);
-        const float repeats = glm::length(b - a) / 3;
-        addWall(mesh, a, b, eaves, eaves + height, design.style.blank, repeats, height / 3);
-        addWall(mesh, b, a, eaves, eaves + height, design.style.blank, repeats, height / 3);
+    constexpr float thickness = 0.02f;  // of the lot's size: about 0.3 m
+    const std::vector<glm::vec3> outer = shrunk(lot, 1, eaves), inner = shrunk(lot, 1 - 2 * thickness, eaves);
+    const glm::vec3 up(0, 0, height);
+    std::vector<glm::vec2> deck;
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+        const std::size_t j = (i + 1) % outer.size();
+        deck.emplace_back(inner[i]);
+        const glm::vec2 a(outer[i]), b(outer[j]);
+        addWall(mesh, a, b, eaves, eaves + height, design.style.blank, glm::length(b - a) / 3, height / 3);
+        addWall(mesh, glm::vec2(inner[j]), glm::vec2(inner[i]), eaves, eaves + height, design.style.blank,
+                glm::length(b - a) / 3, height / 3);
+        addPanel(mesh, outer[i] + up, outer[j] + up, inner[j] + up, inner[i] + up, design.style.trim);
     }
-    addDeck(mesh, ring, eaves, palette.roofFlat, palette.repeat(palette.roofFlat));
+    addDeck(mesh, deck, eaves, palette.roofFlat, palette.repeat(palette.roofFlat));
 }
 
 void appendRoof(const Lot& lot, const HouseDesign& design, float eaves, Mesh& mesh) {

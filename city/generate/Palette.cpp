@@ -25,7 +25,7 @@ Palette makePalette() {
     };
 
     p.streets.asphalt = add(Pattern::asphalt, {0.105f, 0.105f, 0.11f}, 4);
-    p.streets.pavement = add(Pattern::pavement, {0.36f, 0.345f, 0.32f}, 2);
+    p.streets.pavement = add(Pattern::pavement, {0.3f, 0.29f, 0.27f}, 2);
     p.streets.kerb = add(Pattern::plain, {0.42f, 0.41f, 0.39f}, 1);
     p.streets.marking = add(Pattern::marking, {0.72f, 0.72f, 0.7f}, 1);
     p.streets.tramBed = add(Pattern::grass, {0.15f, 0.2f, 0.07f}, 4);
@@ -38,7 +38,7 @@ Palette makePalette() {
     p.gravel = add(Pattern::soil, {0.42f, 0.37f, 0.28f}, 2);
     p.water = add(Pattern::water, {0.07f, 0.13f, 0.15f}, 4);
     p.cobbles = add(Pattern::cobbles, {0.29f, 0.275f, 0.26f}, 2);
-    p.slabs = add(Pattern::pavement, {0.44f, 0.42f, 0.38f}, 3);
+    p.slabs = add(Pattern::pavement, {0.36f, 0.345f, 0.315f}, 3);
     p.bark = add(Pattern::bark, {0.16f, 0.125f, 0.095f}, 1);
     p.foliageBright = add(Pattern::foliage, {0.105f, 0.165f, 0.04f}, 1, true);
     p.foliageDark = add(Pattern::foliage, {0.07f, 0.125f, 0.035f}, 1, true);

@@ -72,8 +72,7 @@ void addBlock(int i, int j, const Palette& p, ChunkCollector& chunks) {
     const float z = L::kerbHeight, repeat = p.repeat(p.streets.pavement);
     const float ix0 = x0 + (west ? w : 0), ix1 = x1 - (east ? w : 0), iy0 = y0 + (south ? w : 0),
                 iy1 = y1 - (north ? w : 0);
-    const bool plaza = i == 1 && j == 1;
-    const std::uint32_t inside = plaza ? p.slabs : p.grass;
+    const std::uint32_t inside = p.grass;
     if (south) addDeck(mesh, rectangle(x0, y0, x1, iy0), z, p.streets.pavement, repeat);
     if (north) addDeck(mesh, rectangle(x0, iy1, x1, y1), z, p.streets.pavement, repeat);
     if (west) addDeck(mesh, rectangle(x0, iy0, ix0, iy1), z, p.streets.pavement, repeat);

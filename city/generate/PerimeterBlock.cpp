@@ -34,13 +34,14 @@ std::vector<float> divide(float length, float low, float high, Random& random) {
 
 }  // namespace
 
-std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, float distance) {
+std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, std::span<const float> distances) {
     const std::size_t n = ring.size();
     std::vector<glm::vec2> inner;
     for (std::size_t i = 0; i < n; ++i) {
         const glm::vec2 before = ring[(i + n - 1) % n], at = ring[i], after = ring[(i + 1) % n];
         const glm::vec2 d0 = glm::normalize(at - before), d1 = glm::normalize(after - at);
-        const glm::vec2 p0 = at - distance * outward(before, at), p1 = at - distance * outward(at, after);
+        const glm::vec2 p0 = at - distances[(i + n - 1) % n] * outward(before, at);
+        const glm::vec2 p1 = at - distances[i] * outward(at, after);
         const float sine = cross(d0, d1);
         inner.push_back(std::abs(sine) < 1e-3f ? p0 : p0 + d0 * (cross(p1 - p0, d1) / sine));
     }
@@ -49,6 +50,10 @@ std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, float dista
         if (glm::dot(inner[(i + 1) % n] - inner[i], ring[(i + 1) % n] - ring[i]) <= 0) return {};
     }
     return inner;
+}
+
+std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, float distance) {
+    return insetRing(ring, std::vector<float>(ring.size(), distance));
 }
 
 HouseDesign drawHouse(const BlockSide& side, double glass, const Palette& palette, Random& random) {

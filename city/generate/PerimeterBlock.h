@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <span>
 #include <vector>
 
 #include "city/generate/House.h"
@@ -44,5 +44,7 @@ HouseDesign drawHouse(const BlockSide& side, double glass, const Palette& palett
 /// Ring moved inwards by `distance` on every side; empty where nothing is left. Convex counter-clockwise
 /// rings.
 std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, float distance);
+/// The same with a distance for every side.
+std::vector<glm::vec2> insetRing(const std::vector<glm::vec2>& ring, std::span<const float> distances);
 
 }  // namespace city
