@@ -7,6 +7,7 @@
 namespace app {
 
 Command tourCommand();
+Command exportCommand();
 Command infoCommand();
 
 /// Every command of the program, in the order in which --help lists them.
