@@ -3,11 +3,12 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
+
+#include "app/display/GlInfo.h"
 
 namespace app {
 
@@ -108,12 +109,8 @@ struct OffscreenContext::Impl {
             surface = eglCreatePbufferSurface(display, config, one.data());
         }
         if (eglMakeCurrent(display, surface, surface, context) != EGL_TRUE) return "eglMakeCurrent failed";
-        const auto text = [](GLenum name) {
-            const GLubyte* value = glGetString(name);
-            return value == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(value));
-        };
-        renderer = text(GL_RENDERER);
-        this->version = text(GL_VERSION);
+        renderer = glText(GL_RENDERER);
+        version = glText(GL_VERSION);
         return {};
     }
 };
@@ -138,9 +135,7 @@ const std::string& OffscreenContext::version() const {
     return impl_->version;
 }
 bool OffscreenContext::software() const {
-    return std::ranges::any_of(
-        std::array<std::string_view, 4>{"llvmpipe", "softpipe", "swrast", "SWR"},
-        [&](std::string_view name) { return impl_->renderer.find(name) != std::string::npos; });
+    return isSoftwareRenderer(impl_->renderer);
 }
 
 }  // namespace app

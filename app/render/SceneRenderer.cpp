@@ -13,6 +13,7 @@
 #include "app/render/FrameUniforms.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/VehiclePass.h"
+#include "app/render/ViewTarget.h"
 #include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Texture.h"
 
@@ -26,6 +27,8 @@ namespace {
 constexpr float cubeNear = 0.05f;
 /// Pixels by which a level of detail may be off on screen.
 constexpr float levelTolerance = 0.75f;
+/// The same for plants: where a leaf sits does not show, only how dense and how wide they are.
+constexpr float foliageTolerance = 6;
 
 float pixelsPerRadian(const View& view) {
     return 0.5f * static_cast<float>(view.size.y) * std::abs(view.clipFromView[1][1]);
@@ -65,6 +68,7 @@ struct SceneRenderer::Impl {
           vehiclePass(models),
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
+          viewTarget(renderOptions.antialiasing),
           cubeTarget(gl::Framebuffer::create()) {
         for (std::size_t target = 0; target < 2; ++target)
             skyPrograms[target] =
@@ -87,7 +91,7 @@ struct SceneRenderer::Impl {
         setDrawState();
         shadow.update(lighting.sunDirection, [&](const PassView& view) {
             setFrame(view);
-            cityPass.draw(view, PassTarget::depth, levelTolerance);
+            cityPass.draw(view, PassTarget::depth, foliageTolerance);
         });
     }
 
@@ -100,16 +104,6 @@ struct SceneRenderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    void requireViewTarget(glm::ivec2 size) {
-        if (viewSize == size) return;
-        viewSize = size;
-        colour = gl::Texture::image2D(GL_RGBA8, size.x, size.y);
-        depth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, size.x, size.y);
-        viewTarget = gl::Framebuffer::create();
-        viewTarget.attach(GL_COLOR_ATTACHMENT0, colour.name()).attach(GL_DEPTH_ATTACHMENT, depth.name());
-        viewTarget.requireComplete("a view");
-    }
-
     RenderOptions options;
     CityPass cityPass;
     ShadowMap shadow;
@@ -118,10 +112,7 @@ struct SceneRenderer::Impl {
     gl::VertexArray emptyArray;
     std::array<gl::Program, 2> skyPrograms;
 
-    glm::ivec2 viewSize{0};
-    gl::Texture colour;
-    gl::Texture depth;
-    gl::Framebuffer viewTarget;
+    ViewTarget viewTarget;
 
     gl::Framebuffer cubeTarget;
     gl::Texture cubeDepth;
@@ -153,15 +144,11 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     Impl& my = *impl_;
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
-    my.requireViewTarget(view.size);
     const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
 
     my.updateShadow();
     setDrawState();
-    glBindFramebuffer(GL_FRAMEBUFFER, my.viewTarget.name());
-    glViewport(0, 0, view.size.x, view.size.y);
-    glClearDepth(0);
-    glClear(GL_DEPTH_BUFFER_BIT);
+    my.viewTarget.begin(view.size);
     my.setFrame(pass);
 
     my.chosen.clear();
@@ -169,12 +156,10 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     const VehiclePass::Counts vehicles =
         my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
                             {&reflections.textures, reflections.slots}, levelTolerance);
-    const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, levelTolerance);
+    const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
     my.drawSky(pass, PassTarget::view);
 
-    glBlitNamedFramebuffer(my.viewTarget.name(), framebuffer, 0, 0, view.size.x, view.size.y, 0, 0,
-                           view.size.x, view.size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    my.viewTarget.finish(framebuffer);
 
     my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + 1;
     my.counters.triangles = vehicles.triangles + city.triangles;
@@ -224,7 +209,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
             }
             my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, levelTolerance);
         }
-        if (content.city) my.cityPass.draw(pass, PassTarget::cube, levelTolerance);
+        if (content.city) my.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
         my.drawSky(pass, PassTarget::cube);
     }
 }

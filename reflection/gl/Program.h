@@ -36,6 +36,9 @@ class Program {
     /// it.
     void set(const char* uniform, int value) const { glProgramUniform1i(name(), location(uniform), value); }
     void set(const char* uniform, float value) const { glProgramUniform1f(name(), location(uniform), value); }
+    void set(const char* uniform, const glm::ivec2& v) const {
+        glProgramUniform2i(name(), location(uniform), v.x, v.y);
+    }
     void set(const char* uniform, const glm::vec2& v) const {
         glProgramUniform2f(name(), location(uniform), v.x, v.y);
     }

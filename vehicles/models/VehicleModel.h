@@ -10,11 +10,14 @@ namespace vehicles {
 
 /// What a vertex of a vehicle is made of: the value of city::Vertex::material in vehicle meshes.
 enum class Surface : std::uint32_t {
-    paint,      ///< the instance's colour under a clear coat
-    glass, chrome,
-    tyre, rim,
-    headLamp, tailLamp,
-    trim,       ///< black plastic, grilles, underbody
+    paint,  ///< the instance's colour under a clear coat
+    glass,
+    chrome,
+    tyre,
+    rim,
+    headLamp,
+    tailLamp,
+    trim,  ///< black plastic, grilles, underbody
     interior,
     count
 };
@@ -22,9 +25,9 @@ enum class Surface : std::uint32_t {
 /// Frame of a vehicle: x forward, y left, z up, origin on the road under the middle of the wheelbase; metres.
 struct VehicleModel {
     struct Level {
-        city::Mesh body;               ///< everything but the wheels, or with them (see below)
-        bool wheelsInBody = false;     ///< far levels carry their wheels as fixed geometry
-        float error = 0;               ///< metres by which the level may differ from level 0
+        city::Mesh body;            ///< everything but the wheels, or with them (see below)
+        bool wheelsInBody = false;  ///< far levels carry their wheels as fixed geometry
+        float error = 0;            ///< metres by which the level may differ from level 0
     };
     struct Wheel {
         glm::vec3 centre{0};  ///< the wheel mesh's origin goes here; it turns about its y axis

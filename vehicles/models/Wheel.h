@@ -1,0 +1,21 @@
+#pragma once
+
+#include "vehicles/models/VehicleModel.h"
+
+namespace vehicles {
+
+struct WheelShape {
+    float radius = 0.32f;  ///< metres, over the tread
+    float width = 0.205f;
+    float rimRadius = 0.21f;  ///< where the tyre meets the rim
+    int spokes = 5;           ///< 0: a pressed steel disc, as on buses
+    bool tyre = true;         ///< false: a steel wheel, as on trams
+};
+
+/// A left-hand wheel as VehicleModel::wheel asks: axle along y, outside towards +y, about 1,500 triangles.
+city::Mesh wheelMesh(const WheelShape& shape);
+
+/// The same outline in about 60 triangles, for far levels.
+city::Mesh plainWheelMesh(const WheelShape& shape, int segments);
+
+}  // namespace vehicles
