@@ -26,10 +26,6 @@ using VI = hn::Vec<Int>;
 using VW = hn::Vec<Word>;
 using MF = hn::Mask<Float>;
 
-/// Ray parameter that stands for the sky: far enough that a reference map's offset does not turn the direction by a texel (100 m
-/// at 1e5 m: 1e-3 rad), small enough that float keeps the offset.
-constexpr float skyParameter = 1e5f;
-
 struct MapView {
     const std::uint8_t* words;
     const std::uint16_t* chroma;
@@ -40,7 +36,8 @@ struct MapView {
 
 struct FacePoint {
     VI face;
-    VF u, v;  ///< texels from the face's corner, 0 .. faceSize
+    VF u, v;   ///< texels from the face's corner, 0 .. faceSize
+    VF depth;  ///< along the face's major axis
 };
 
 HWY_INLINE FacePoint toFace(VF x, VF y, VF z, int faceSize) {
@@ -61,7 +58,7 @@ HWY_INLINE FacePoint toFace(VF x, VF y, VF z, int faceSize) {
     const VI pair = hn::IfThenElse(hn::RebindMask(di, isX), hn::Zero(di),
                                    hn::IfThenElse(hn::RebindMask(di, isY), hn::Set(di, 2), hn::Set(di, 4)));
     const VI negative = hn::BitCast(di, hn::ShiftRight<31>(hn::BitCast(Word(), value)));
-    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half)};
+    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half), major};
 }
 
 /// The 20-bit word of a bordered texel.
@@ -81,65 +78,70 @@ HWY_INLINE VI borderedIndex(VI face, VI x, VI y, int faceSize) {
     return hn::Add(hn::Mul(hn::Add(hn::Mul(face, m), y), m), x);
 }
 
-/// Reciprocal of the stored distance in the direction (x, y, z), 0 for sky.
-HWY_INLINE VF reciprocalDistance(const MapView& map, VF x, VF y, VF z) {
+/// What a map holds in the direction of a point.
+struct Probe {
+    VF disagreement;  ///< depth of the point times the nearness there, minus 1
+    VF sum;           ///< R+G+B
+    VI chromaBlock;
+};
+
+/// Bilinear in nearness and brightness; the block of the nearest texel for chroma.
+HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
     const Float d;
     const Int di;
     const Word dw;
     const FacePoint p = toFace(x, y, z, map.faceSize);
-    const VI last = hn::Set(di, map.faceSize);
+    const VF half = hn::Set(d, 0.5f);
+    // In bordered texels the centre of texel i lies at i + 1.5; clamped, since rounding may pass the face's edge.
+    const VF most = hn::Set(d, static_cast<float>(map.faceSize) + 0.9999f);
+    const VF u = hn::Min(hn::Max(hn::Add(p.u, half), hn::Zero(d)), most);
+    const VF v = hn::Min(hn::Max(hn::Add(p.v, half), hn::Zero(d)), most);
+    const VI ix = hn::ConvertTo(di, u), iy = hn::ConvertTo(di, v);
+    const VF fx = hn::Sub(u, hn::ConvertTo(d, ix)), fy = hn::Sub(v, hn::ConvertTo(d, iy));
+    const VI index = borderedIndex(p.face, ix, iy, map.faceSize);
+    const VI row = hn::Set(di, map.faceSize + 2);
     const VI one = hn::Set(di, 1);
-    const VI ix = hn::Min(hn::Add(hn::ConvertTo(di, p.u), one), last);
-    const VI iy = hn::Min(hn::Add(hn::ConvertTo(di, p.v), one), last);
-    const VW code = hn::And(fetchWord(map, borderedIndex(p.face, ix, iy, map.faceSize)),
-                            hn::Set(dw, PackedReferenceMap::infiniteDistance));
-    const VW bits = hn::Add(hn::ShiftLeft<16>(code),
-                            hn::Set(dw, static_cast<std::uint32_t>(PackedReferenceMap::distanceExponentBias) << 23));
-    const MF infinite = hn::RebindMask(d, hn::Eq(code, hn::Set(dw, PackedReferenceMap::infiniteDistance)));
-    return hn::IfThenElse(infinite, hn::Zero(d), hn::Div(hn::Set(d, 1.0f), hn::BitCast(d, bits)));
+    const VW w00 = fetchWord(map, index), w10 = fetchWord(map, hn::Add(index, one));
+    const VW w01 = fetchWord(map, hn::Add(index, row)), w11 = fetchWord(map, hn::Add(hn::Add(index, row), one));
+    const auto bilinear = [&](VF a, VF b, VF c, VF e) {
+        const VF top = hn::MulAdd(fx, hn::Sub(b, a), a), bottom = hn::MulAdd(fx, hn::Sub(e, c), c);
+        return hn::MulAdd(fy, hn::Sub(bottom, top), top);
+    };
+    const auto nearness = [&](VW word) {
+        const VW code = hn::And(word, hn::Set(dw, PackedReferenceMap::nearnessMask));
+        return hn::BitCast(d, hn::Add(hn::ShiftLeft<16>(code), hn::Set(dw, PackedReferenceMap::nearnessExponentBias << 23)));
+    };
+    const auto sum = [&](VW word) {
+        const VW code = hn::ShiftRight<PackedReferenceMap::nearnessBits>(word);
+        return hn::BitCast(d, hn::Add(hn::ShiftLeft<PackedReferenceMap::sumMantissaShift>(code),
+                                      hn::Set(dw, PackedReferenceMap::sumExponentBias << 23)));
+    };
+    Probe result;
+    result.disagreement = hn::Sub(hn::Mul(p.depth, bilinear(nearness(w00), nearness(w10), nearness(w01), nearness(w11))), hn::Set(d, 1.0f));
+    result.sum = bilinear(sum(w00), sum(w10), sum(w01), sum(w11));
+    const VI blocks = hn::Set(di, (map.faceSize + 2) / 2);
+    const VI last = hn::Sub(blocks, one);
+    const VI bx = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(u, half))), last);
+    const VI by = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half))), last);
+    result.chromaBlock = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, blocks), by), blocks), bx);
+    return result;
 }
 
 struct Colour {
     VF red, green, blue;
 };
 
-/// Bilinear in brightness, nearest block in chroma.
-HWY_INLINE Colour fetchColour(const MapView& map, VF x, VF y, VF z) {
+HWY_INLINE Colour colourOf(const MapView& map, VF sum, VI chromaBlock) {
     const Float d;
     const Int di;
     const Word dw;
-    const FacePoint p = toFace(x, y, z, map.faceSize);
-    const VF half = hn::Set(d, 0.5f);
-    // Bordered coordinates: texel i has its centre at i + 1.5 - 1 = u + 0.5; clamped for u beyond the face by rounding.
-    const VF greatest = hn::Set(d, static_cast<float>(map.faceSize));
-    const VF u = hn::Min(hn::Max(hn::Add(p.u, half), hn::Zero(d)), hn::Add(greatest, hn::Set(d, 0.9999f)));
-    const VF v = hn::Min(hn::Max(hn::Add(p.v, half), hn::Zero(d)), hn::Add(greatest, hn::Set(d, 0.9999f)));
-    const VI ix = hn::ConvertTo(di, u), iy = hn::ConvertTo(di, v);
-    const VF fx = hn::Sub(u, hn::ConvertTo(d, ix)), fy = hn::Sub(v, hn::ConvertTo(d, iy));
-    const VI index = borderedIndex(p.face, ix, iy, map.faceSize);
-    const VI row = hn::Set(di, map.faceSize + 2);
-    const VI one = hn::Set(di, 1);
-    const auto sum = [&](VI i) {
-        const VW code = hn::ShiftRight<PackedReferenceMap::distanceBits>(fetchWord(map, i));
-        return hn::BitCast(d, hn::Add(hn::ShiftLeft<18>(code), hn::Set(dw, (127u - 16u) << 23)));
-    };
-    const VF s00 = sum(index), s10 = sum(hn::Add(index, one));
-    const VF s01 = sum(hn::Add(index, row)), s11 = sum(hn::Add(hn::Add(index, row), one));
-    const VF top = hn::MulAdd(fx, hn::Sub(s10, s00), s00), bottom = hn::MulAdd(fx, hn::Sub(s11, s01), s01);
-    const VF all = hn::Mul(hn::MulAdd(fy, hn::Sub(bottom, top), top), hn::Set(d, map.radianceScale));
-
-    // The block that holds the nearest texel: (round(u - 0.5) in bordered texels) / 2.
-    const VI bx = hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(u, half)));
-    const VI by = hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half)));
-    const VI m = hn::Set(di, (map.faceSize + 2) / 2);
-    const VI block = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, m), hn::Min(by, hn::Sub(m, one))), m),
-                             hn::Min(bx, hn::Sub(m, one)));
-    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma), hn::ShiftLeft<1>(block));
+    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma), hn::ShiftLeft<1>(chromaBlock));
     const VW low = hn::Set(dw, 0xffu);
     const VF unit = hn::Set(d, 1.0f / 255.0f);
     const VF red = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(shares, low))), unit);
     const VF blue = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<8>(shares), low))), unit);
     const VF green = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(hn::Set(d, 1.0f), red), blue));
+    const VF all = hn::Mul(sum, hn::Set(d, map.radianceScale));
     return {hn::Mul(all, red), hn::Mul(all, green), hn::Mul(all, blue)};
 }
 
@@ -147,16 +149,11 @@ MapView viewOf(const Candidate& c) {
     return {c.map->words(), c.map->chroma(), c.map->faceSize(), c.map->radianceScale(), c.offset.x, c.offset.y, c.offset.z};
 }
 
-/// |X - C| / D - 1 for X = t d; 0 at infinity against sky.
-HWY_INLINE VF disagreement(const MapView& map, VF dx, VF dy, VF dz, VF t) {
+/// The map's answer for the point t d of a ray.
+HWY_INLINE Probe probeAlong(const MapView& map, VF dx, VF dy, VF dz, VF t) {
     const Float d;
-    const VF x = hn::Sub(hn::Mul(t, dx), hn::Set(d, map.ox));
-    const VF y = hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy));
-    const VF z = hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz));
-    const VF distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
-    const VF reciprocal = reciprocalDistance(map, x, y, z);
-    const MF sky = hn::And(hn::Eq(reciprocal, hn::Zero(d)), hn::Ge(t, hn::Set(d, skyParameter)));
-    return hn::IfThenElse(sky, hn::Zero(d), hn::Sub(hn::Mul(distance, reciprocal), hn::Set(d, 1.0f)));
+    return probe(map, hn::Sub(hn::Mul(t, dx), hn::Set(d, map.ox)), hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy)),
+                 hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz)));
 }
 
 void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate> candidates, const LookupOptions& options,
@@ -168,7 +165,8 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
     const std::size_t base = out.faceOffset(face);
     const std::size_t texels = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     const float step = 2.0f / static_cast<float>(n);
-    const VF sky = hn::Set(d, skyParameter);
+    const Int di;
+    const VF sky = hn::Set(d, PackedReferenceMap::skyDepth);
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const VF agreement = hn::Set(d, options.agreement);
     const VF one = hn::Set(d, 1.0f);
@@ -199,7 +197,7 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
             std::copy_n(reciprocal + first, count, rest);
             start = hn::Load(d, rest);
         }
-        start = hn::Min(hn::Div(one, hn::Max(start, hn::Set(d, 1.0f / skyParameter))), sky);
+        start = hn::Min(hn::Div(one, hn::Max(start, hn::Set(d, 1.0f / PackedReferenceMap::skyDepth))), sky);
 
         VF bestError = infinity, bestDepth = start;
         Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -207,42 +205,40 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
             const MapView map = viewOf(candidate);
             const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox), hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
             VF ta = start;
-            VF qa = disagreement(map, dx, dy, dz, ta);
-            VF error = hn::Abs(qa), depth = ta;
+            Probe at = probeAlong(map, dx, dy, dz, ta);
+            VF qa = at.disagreement, sum = at.sum, error = hn::Abs(qa), depth = ta;
+            VI block = at.chromaBlock;
             VF tb = ta, qb = qa;
             for (int k = 1; k < options.lookups; ++k) {
                 if (hn::AllTrue(d, hn::Le(hn::Min(error, bestError), agreement))) break;
                 VF next;
                 if (k == 1) {
                     // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray parameter is
-                    // (d.C + (t d.d - d.C) / (1 + q)) / d.d. Against sky (q = -1) the ray goes on to the sky.
-                    const MF open = hn::Le(qa, hn::Set(d, -0.9999f));
-                    const VF scale = hn::Div(one, hn::Add(hn::IfThenElse(open, hn::Zero(d), qa), one));
+                    // (d.C + (t d.d - d.C) / (1 + q)) / d.d.
+                    const VF scale = hn::Div(one, hn::Max(hn::Add(qa, one), hn::Set(d, 1e-4f)));
                     next = hn::Div(hn::MulAdd(hn::Sub(hn::Mul(ta, dd), dc), scale, dc), dd);
-                    next = hn::IfThenElse(open, sky, next);
                 } else {
                     const VF slope = hn::Sub(qb, qa);
                     const MF flat = hn::Lt(hn::Abs(slope), hn::Set(d, 1e-6f));
                     next = hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
                     next = hn::IfThenElse(flat, tb, next);
                 }
-                // A step may shrink or stretch the distance four times at most, but for the sky.
-                const VF least = hn::Mul(tb, hn::Set(d, 0.25f)), most = hn::Mul(tb, hn::Set(d, 4.0f));
-                next = hn::IfThenElse(hn::Ge(next, sky), sky, hn::Max(hn::Min(next, most), least));
+                next = hn::Max(hn::Min(next, sky), hn::Mul(tb, hn::Set(d, 0.25f)));
                 ta = tb;
                 qa = qb;
                 tb = next;
-                qb = disagreement(map, dx, dy, dz, tb);
+                at = probeAlong(map, dx, dy, dz, tb);
+                qb = at.disagreement;
                 const VF size = hn::Abs(qb);
                 const MF better = hn::Lt(size, error);
                 error = hn::IfThenElse(better, size, error);
                 depth = hn::IfThenElse(better, tb, depth);
+                sum = hn::IfThenElse(better, at.sum, sum);
+                block = hn::IfThenElse(hn::RebindMask(di, better), at.chromaBlock, block);
             }
             const MF improves = hn::AndNot(hn::Le(bestError, agreement), hn::Lt(error, bestError));
             if (!hn::AllFalse(d, improves)) {
-                const Colour c = fetchColour(map, hn::Sub(hn::Mul(depth, dx), hn::Set(d, map.ox)),
-                                             hn::Sub(hn::Mul(depth, dy), hn::Set(d, map.oy)),
-                                             hn::Sub(hn::Mul(depth, dz), hn::Set(d, map.oz)));
+                const Colour c = colourOf(map, sum, block);
                 colour.red = hn::IfThenElse(improves, c.red, colour.red);
                 colour.green = hn::IfThenElse(improves, c.green, colour.green);
                 colour.blue = hn::IfThenElse(improves, c.blue, colour.blue);
@@ -251,7 +247,8 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
             }
             if (hn::AllTrue(d, hn::Le(bestError, agreement))) break;
         }
-        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, sky), infinity, bestDepth);
+        // Between the farthest building and the sky there is nothing: halfway decides.
+        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, hn::Set(d, 0.5f * PackedReferenceMap::skyDepth)), infinity, bestDepth);
 
         const auto store = [&](VF value, std::vector<float>& plane) {
             if (count == lanes) {
@@ -287,7 +284,8 @@ void LookUpBlended(int face, const float* px, const float* py, const float* pz, 
         };
         const VF x = load(px, 0), y = load(py, 1), z = load(pz, 2), w = load(weightA, 3);
         const auto at = [&](const MapView& map) {
-            return fetchColour(map, hn::Sub(x, hn::Set(d, map.ox)), hn::Sub(y, hn::Set(d, map.oy)), hn::Sub(z, hn::Set(d, map.oz)));
+            const Probe p = probe(map, hn::Sub(x, hn::Set(d, map.ox)), hn::Sub(y, hn::Set(d, map.oy)), hn::Sub(z, hn::Set(d, map.oz)));
+            return colourOf(map, p.sum, p.chromaBlock);
         };
         const Colour ca = at(mapA), cb = at(mapB);
         const auto store = [&](VF va, VF vb, std::vector<float>& plane) {

@@ -26,13 +26,14 @@ struct LookupOptions {
 /// Reads a face of a local map from reference maps with refined hits.
 ///
 /// For each texel the ray P + t d starts from the heightfield's hit t0 = 1 / reciprocal. Seen from a candidate at C the point X = P +
-/// t d lies at distance |X - C| in a direction in which the candidate stored D. Along a planar surface q(t) = |X - C| / D - 1 is a
-/// linear function of t (D = c / (n.w) for the unit direction w, so |X - C| / D = n.(X - C) / c), so the secant through two lookups
-/// meets the surface exactly, whatever the angle; the start is the projection of the candidate's own surface point onto the ray. q
-/// < 0: the candidate looks past X, so the heightfield was too fat; q > 0: something hides X from the candidate. The
+/// t d has depth m(X) along the axis of the face in which it lies, where the candidate stored depth M. Along a plane n.(Y - C) = c
+/// the ratio q(t) = m / M - 1 is a linear function of t (1 / M = n.w / c for the direction w = (X - C) / m, so m / M = n.(X - C) / c):
+/// the secant through two lookups meets the surface exactly, whatever the angle; the start is the projection of the candidate's own
+/// surface point onto the ray. q < 0: the candidate looks past X, so the heightfield was too fat; q > 0: something hides X from the
+/// candidate. The
 /// candidates are asked in the order given until one agrees; where none does the best agreement wins (the paper: the closest).
 ///
-/// `reciprocal`: faceSize^2 values of 1/t0, 0 for sky. Writes the face's texels of `map`. Needs at least one candidate, all of one
+/// `reciprocal`: faceSize^2 values of 1/t0, 0 for sky (taken as a cube skyDepth away). Writes the face's texels of `map`. Needs at least one candidate, all of one
 /// face size. Cost: about lookups + 5 gathers a texel.
 void lookUpRefined(int face, std::span<const float> reciprocal, std::span<const Candidate> candidates,
                    const LookupOptions& options, LocalMap& map);

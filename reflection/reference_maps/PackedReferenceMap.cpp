@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
 
@@ -12,8 +13,8 @@ namespace reflection {
 
 namespace {
 
-constexpr std::uint32_t sumMantissaShift = 18;  // keeps 5 of 23 mantissa bits
-constexpr std::uint32_t sumExponentBias = 127 - 16;
+constexpr std::uint32_t sumMantissaShift = PackedReferenceMap::sumMantissaShift;
+constexpr std::uint32_t sumExponentBias = PackedReferenceMap::sumExponentBias;
 constexpr std::uint32_t greatestSum = (1u << 9) - 1;
 
 /// Integer hash (finaliser of MurmurHash3): the dither must be the same on every machine.
@@ -36,22 +37,17 @@ float decodeSum(std::uint32_t code) {
     return std::bit_cast<float>((code << sumMantissaShift) + (sumExponentBias << 23));
 }
 
+/// Rounded to the nearest code; zero and NaN are the least.
+std::uint32_t encodeNearness(float nearness) {
+    constexpr std::uint32_t lowest = PackedReferenceMap::nearnessExponentBias << 23;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(nearness);
+    if (!(nearness > 0) || bits <= lowest) return 0;
+    return std::min(PackedReferenceMap::nearnessMask, (bits - lowest + 0x8000u) >> 16);
+}
+
 float finiteOrZero(float x) { return x > 0 ? std::min(x, std::numeric_limits<float>::max()) : 0.0f; }
 
 }  // namespace
-
-std::uint32_t PackedReferenceMap::encodeDistance(float metres) {
-    constexpr std::uint32_t lowest = static_cast<std::uint32_t>(distanceExponentBias) << 23;
-    if (metres == std::numeric_limits<float>::infinity()) return infiniteDistance;
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(metres);
-    if (!(metres > 0) || bits <= lowest) return 0;
-    return std::min(infiniteDistance - 1, (bits - lowest + 0x8000u) >> 16);
-}
-
-float PackedReferenceMap::decodeDistance(std::uint32_t code) {
-    if (code == infiniteDistance) return std::numeric_limits<float>::infinity();
-    return std::bit_cast<float>((code << 16) + (static_cast<std::uint32_t>(distanceExponentBias) << 23));
-}
 
 PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceScale)
     : position_(map.position), faceSize_(map.faceSize), radianceScale_(radianceScale) {
@@ -84,6 +80,8 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
                static_cast<std::size_t>(x);
     };
 
+    const auto directionLength = [n](int x, int y) { return glm::length(cubeDirection(0, glm::vec2(x, y) + 0.5f, n)); };
+
     for (int face = 0; face < 6; ++face) {
         for (int by = 0; by < m / 2; ++by) {
             for (int bx = 0; bx < m / 2; ++bx) {
@@ -102,8 +100,8 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
                     const std::size_t index = borderedIndex(face, x, y);
                     const std::uint32_t word =
                         (encodeSum(sum / radianceScale, scramble(static_cast<std::uint32_t>(index)))
-                         << distanceBits) |
-                        encodeDistance(map.distance[from]);
+                         << nearnessBits) |
+                        encodeNearness(directionLength(x, y) / map.distance[from]);
                     const std::size_t byte = index * 5 / 2;
                     if (index % 2 == 0) {
                         words_[byte] = static_cast<std::uint8_t>(word);
@@ -140,12 +138,18 @@ std::uint32_t PackedReferenceMap::wordAt(std::size_t index) const {
     return (three >> (index % 2 == 0 ? 0 : 4)) & 0xfffffu;
 }
 
+float PackedReferenceMap::nearnessAt(int face, int x, int y) const {
+    return std::bit_cast<float>(((wordAt(borderedIndex(face, x, y)) & nearnessMask) << 16) + (nearnessExponentBias << 23));
+}
+
 float PackedReferenceMap::distanceAt(int face, int x, int y) const {
-    return decodeDistance(wordAt(borderedIndex(face, x, y)) & infiniteDistance);
+    const float nearness = nearnessAt(face, x, y);
+    if (nearness <= 1 / skyDepth) return std::numeric_limits<float>::infinity();
+    return glm::length(cubeDirection(face, glm::vec2(x, y) + 0.5f, faceSize_)) / nearness;
 }
 
 glm::vec3 PackedReferenceMap::colourAt(int face, int x, int y) const {
-    const float sum = radianceScale_ * decodeSum(wordAt(borderedIndex(face, x, y)) >> distanceBits);
+    const float sum = radianceScale_ * decodeSum(wordAt(borderedIndex(face, x, y)) >> nearnessBits);
     const auto half = static_cast<std::size_t>(faceSize_ + 2) / 2;
     const std::uint16_t shares =
         chroma_[(static_cast<std::size_t>(face) * half + static_cast<std::size_t>((y + 1) / 2)) * half +

@@ -11,11 +11,15 @@ namespace reflection {
 /// A reference map in three bytes a texel, HDR colour and distance together, made for random access by SIMD gathers:
 /// no block to decode, no table.
 ///
-///   word    20 bits a texel: distance in 11 bits (4 exponent, 7 mantissa: 1/8 m .. 8 km within 0.4 %, then
-///           infinity), the sum R+G+B in 9 bits (4 exponent, 5 mantissa: 16 octaves below `radianceScale`, within 1.6 %, dithered
-///           so that a gradient does not band).
+///   word    20 bits a texel: nearness in 11 bits (4 exponent, 7 mantissa: 1/8 m .. 8 km within 0.4 %), the sum R+G+B in 9
+///           bits (4 exponent, 5 mantissa: 16 octaves below `radianceScale`, within 1.6 %, dithered so that a gradient does
+///           not band).
 ///   chroma  16 bits for each 2x2 texels: R/(R+G+B) and B/(R+G+B) in 8 bits each: the eye resolves colour less
 ///           finely than brightness.
+///
+/// Nearness is the reciprocal of the depth along the face's major axis: over a plane it is linear in the face coordinates, so
+/// that a bilinear lookup meets facades and streets exactly, however flat they are seen. Sky has the least nearness there is,
+/// that of a cube 8192 m around the map: farther than any building, and near enough to need no case of its own.
 ///
 /// Every face carries a border of one texel from its neighbours, so that a bilinear lookup never leaves its face.
 /// For comparison: 4 bytes in the paper, with 8-bit colour and 8-bit depth.
@@ -35,15 +39,20 @@ class PackedReferenceMap {
     std::size_t texelCount() const { return 6 * static_cast<std::size_t>(faceSize_) * static_cast<std::size_t>(faceSize_); }
 
     /// The slow way to one texel, border included: x and y in -1 .. faceSize. Oracle of the SIMD lookup.
+    float nearnessAt(int face, int x, int y) const;
+    /// Metres from the map's centre, +infinity for sky.
     float distanceAt(int face, int x, int y) const;
     glm::vec3 colourAt(int face, int x, int y) const;
 
-    static constexpr std::uint32_t distanceBits = 11;
-    static constexpr std::uint32_t infiniteDistance = (1u << distanceBits) - 1;
-    /// Smallest distance that is told apart: 2^-3 m; codes below mean this.
-    static constexpr int distanceExponentBias = 127 - 3;
-    static std::uint32_t encodeDistance(float metres);
-    static float decodeDistance(std::uint32_t code);
+    static constexpr std::uint32_t nearnessBits = 11;
+    static constexpr std::uint32_t nearnessMask = (1u << nearnessBits) - 1;
+    /// Exponent bias of the least nearness, 2^-13 per metre.
+    static constexpr std::uint32_t nearnessExponentBias = 127 - 13;
+    static constexpr std::uint32_t sumMantissaShift = 18;  ///< keeps 5 of 23 mantissa bits
+    static constexpr std::uint32_t sumExponentBias = 127 - 16;
+    /// Depth along the major axis that stands for the sky, metres.
+    static constexpr float skyDepth = 8192;
+
 
   private:
     std::size_t borderedIndex(int face, int x, int y) const;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "city/model/CityModel.h"
+#include "city/terrain/Heightfield.h"
+
+namespace city {
+
+/// The city seen from above: ground, buildings, furniture and those placements whose prototype counts as a column
+/// (trees: their crowns become solid). Covers buildings, placements and lanes with a margin of 30 m, within the city's
+/// bounds; a plain that runs on to the horizon does not blow it up. A city with nothing in it gives one empty cell. Throws
+/// std::invalid_argument for a cell that is not finite and positive or so small that the field would pass 2^28 cells. Cost: linear in
+/// triangles and cells.
+Heightfield cityHeightfield(const CityModel& city, float cellSize = 1);
+
+/// Buildings alone, each cell no higher than what stands over the whole of it: what hides behind it is hidden for sure.
+Heightfield occluderHeightfield(const CityModel& city, float cellSize = 2);
+
+}  // namespace city
