@@ -1,5 +1,7 @@
 #pragma once
 
+#include <epoxy/gl.h>
+
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -15,7 +17,10 @@ enum class PassTarget : std::uint8_t { view, cube, depth };
 inline constexpr std::size_t passTargetCount = 3;
 
 inline std::vector<std::string> definesFor(PassTarget target, std::vector<std::string> more = {}) {
-    if (target == PassTarget::cube) more.emplace_back("CUBE");
+    if (target == PassTarget::cube) {
+        more.emplace_back("CUBE");
+        if (epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")) more.emplace_back("LAYERED");
+    }
     if (target == PassTarget::depth) more.emplace_back("DEPTH");
     return more;
 }

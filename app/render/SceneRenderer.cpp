@@ -9,12 +9,12 @@
 #include <limits>
 
 #include "app/render/CityPass.h"
+#include "app/render/CubeDestination.h"
 #include "app/render/CubeFaces.h"
 #include "app/render/FrameUniforms.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/VehiclePass.h"
 #include "app/render/ViewTarget.h"
-#include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Texture.h"
 
 namespace app {
@@ -68,17 +68,17 @@ struct SceneRenderer::Impl {
           vehiclePass(models),
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
-          viewTarget(renderOptions.antialiasing),
-          cubeTarget(gl::Framebuffer::create()) {
+          viewTarget(renderOptions.antialiasing) {
         for (std::size_t target = 0; target < 2; ++target)
             skyPrograms[target] =
                 gl::Program::fromFiles({"sky.vert", "sky.frag"}, definesFor(static_cast<PassTarget>(target)));
     }
 
-    void setFrame(const PassView& view) {
+    void setFrame(const PassView& view, int layer = 0) {
         FrameUniforms uniforms;
         uniforms.clipFromRelative = view.clipFromRelative;
         uniforms.setEye(view.eye);
+        uniforms.eyeLow.w = static_cast<float>(layer);
         uniforms.setLighting(lighting);
         uniforms.setShadow(shadow.shadowFromWorld(), shadow.normalOffset());
         frameUniforms.replaceWith(uniforms);
@@ -114,9 +114,7 @@ struct SceneRenderer::Impl {
 
     ViewTarget viewTarget;
 
-    gl::Framebuffer cubeTarget;
-    gl::Texture cubeDepth;
-    int cubeFaceSize = 0;
+    CubeDestination cube;
 
     Lighting lighting;
     std::vector<vehicles::VehiclePose> poses;
@@ -172,30 +170,14 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
                              const reflection::CubeContent& content) {
     Impl& my = *impl_;
     if (target.colour == 0 || target.faceSize <= 0) return;
-    if (my.cubeFaceSize != target.faceSize) {
-        my.cubeFaceSize = target.faceSize;
-        my.cubeDepth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, target.faceSize, target.faceSize);
-        my.cubeTarget.attach(GL_DEPTH_ATTACHMENT, my.cubeDepth.name());
-    }
     my.updateShadow();
     setDrawState();
-    glBindFramebuffer(GL_FRAMEBUFFER, my.cubeTarget.name());
-    glViewport(0, 0, target.faceSize, target.faceSize);
-    glClearDepth(0);
+    my.cube.begin(target);
     for (int face = 0; face < 6; ++face) {
-        my.cubeTarget.attachLayer(GL_COLOR_ATTACHMENT0, target.colour, 6 * target.layer + face);
-        if (target.distance != 0) {
-            my.cubeTarget.attachLayer(GL_COLOR_ATTACHMENT1, target.distance, 6 * target.layer + face);
-        } else {
-            my.cubeTarget.attach(GL_COLOR_ATTACHMENT1, 0);
-        }
-        const std::array<GLenum, 2> attachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-        glNamedFramebufferDrawBuffers(my.cubeTarget.name(), target.distance != 0 ? 2 : 1, attachments.data());
-        glClear(GL_DEPTH_BUFFER_BIT);
-
+        my.cube.selectFace(face);
         const PassView pass(centre, clipFromCubeFace(face, cubeNear),
                             0.5f * static_cast<float>(target.faceSize));
-        my.setFrame(pass);
+        my.setFrame(pass, face);
         if (content.vehicles) {
             my.chosen.clear();
             for (std::uint32_t i = 0; i < my.poses.size(); ++i) {

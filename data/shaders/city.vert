@@ -1,6 +1,6 @@
 #version 450 core
 // The static city: all light that does not need a texture is worked out per vertex.
-#ifdef CUBE
+#ifdef LAYERED
 #extension GL_ARB_shader_viewport_layer_array : enable
 #endif
 #include "frame.glsl"
@@ -23,7 +23,6 @@ layout(location = 6) in vec4 worldFromPrototype1;
 layout(location = 7) in vec4 worldFromPrototype2;
 #endif
 #ifdef CUBE
-uniform int layer;
 layout(location = 5) out vec3 relativeOut;
 #endif
 
@@ -50,7 +49,7 @@ void main() {
 #ifdef CUBE
     relativeOut = relative;
 #ifdef LAYERED
-    gl_Layer = layer;
+    gl_Layer = int(frame.eyeLow.w);
 #endif
 #endif
     MaterialEntry m = materials[material];

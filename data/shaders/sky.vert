@@ -1,11 +1,10 @@
 #version 450 core
 // One triangle over the whole view at infinite depth.
-#ifdef CUBE
+#ifdef LAYERED
 #extension GL_ARB_shader_viewport_layer_array : enable
 #endif
 #include "frame.glsl"
 uniform mat4 relativeFromClip;
-uniform int layer;
 layout(location = 0) out vec3 directionOut;
 void main() {
     vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
@@ -13,6 +12,6 @@ void main() {
     vec4 near = relativeFromClip * vec4(corner, 1.0, 1.0);
     directionOut = near.xyz / near.w;
 #ifdef LAYERED
-    gl_Layer = layer;
+    gl_Layer = int(frame.eyeLow.w);
 #endif
 }

@@ -1,5 +1,5 @@
 #version 450 core
-#ifdef CUBE
+#ifdef LAYERED
 #extension GL_ARB_shader_viewport_layer_array : enable
 #endif
 #include "frame.glsl"
@@ -34,7 +34,6 @@ layout(location = 3) out vec3 coatOut;      // F0; 1: a surface with a polished 
 #ifdef REFLECTIVE
 layout(location = 4) flat out float mapLayerOut;
 #endif
-uniform int layer;
 
 void main() {
     vec4 local = vec4(position, 1.0);
@@ -43,7 +42,7 @@ void main() {
                             dot(relativeFromVehicle2.xyz, normal.xyz)));
     gl_Position = frame.clipFromRelative * vec4(relative, 1.0);
 #ifdef LAYERED
-    gl_Layer = layer;
+    gl_Layer = int(frame.eyeLow.w);
 #endif
     vec4 s = surfaces[surface];
     vec3 albedo = surface == 0u ? paint.rgb : s.rgb;
