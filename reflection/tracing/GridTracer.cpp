@@ -66,8 +66,6 @@ GridTracer::GridTracer(const city::Heightfield& field) {
 }
 
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
-    if (!validRay(ray))
-        return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
     return leapWalk(*grid_, ray,
                     tMax < std::numeric_limits<float>::max() || std::isnan(tMax)

@@ -18,126 +18,169 @@ float exactAnswer(const TracedGrid& grid, const city::Ray& ray) {
     return exactWalk(grid, ray, std::numeric_limits<float>::max()).t;
 }
 
-TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
-    if (!grid.leaps) return exactWalk(grid, ray, tMax);
-    const int i0 = grid.cellX(ray.origin.x);
-    const int j0 = grid.cellY(ray.origin.y);
-    const float da = std::abs(ray.direction.x);
-    const float db = std::abs(ray.direction.y);
-    const float fastest = std::max(da, db);
-    const float dz = ray.direction.z * static_cast<float>(grid.cellSize);
-    const float oz = ray.origin.z;
-    const bool ordinary = static_cast<unsigned>(i0) < static_cast<unsigned>(grid.width) &&
-                          static_cast<unsigned>(j0) < static_cast<unsigned>(grid.height) &&
-                          fastest >= leapSlowest && fastest <= leapFastest && std::abs(dz) <= leapHighest &&
-                          std::abs(oz) <= leapHighest;
-    if (!ordinary) return exactWalk(grid, ray, tMax);
+namespace {
 
-    const bool west = ray.direction.x < 0;
-    const bool south = ray.direction.y < 0;
-    const double fu = (static_cast<double>(ray.origin.x) - grid.planeX(i0)) * grid.perCell;
-    const double fv = (static_cast<double>(ray.origin.y) - grid.planeY(j0)) * grid.perCell;
-    const float fa = static_cast<float>(west ? 1 - fu : fu);
-    const float fb = static_cast<float>(south ? 1 - fv : fv);
-    const bool crossesA = da >= negligibleSlope * fastest;
-    const bool crossesB = db >= negligibleSlope * fastest;
-    // A ray that never crosses borders of one axis must stay clear of them, or `never` would meet a distance
-    // of 0.
-    const float never = 0x1p100f;
-    if ((!crossesA && std::min(fa, 1 - fa) <= 4 * leapError) ||
-        (!crossesB && std::min(fb, 1 - fb) <= 4 * leapError))
-        return exactWalk(grid, ray, tMax);
-    const float inverseA = crossesA ? 1 / da : never;
-    const float inverseB = crossesB ? 1 / db : never;
-    const float inverseMax = std::max(crossesA ? inverseA : 0, crossesB ? inverseB : 0);
+/// A coordinate's cell and the part behind it, in cells.
+struct Place {
+    int cell;
+    double rest;
+};
+
+/// Outside the grid, and for a NaN, the cell is -1.
+inline Place place(double value, double first, double perCell, int cells) {
+    const double u = (value - first) * perCell;
+    if (!(u >= 0 && u < cells)) return {-1, 0};
+    const int cell = static_cast<int>(u);
+    return {cell, u - cell};
+}
+
+/// Is a place so near its cell's border that only the rule itself (TracedGrid::cellX) can tell the cell?
+inline bool borderline(double rest) {
+    return std::abs(rest - 0.5) > 0.5 - 0x1p-28;
+}
+
+/// Distance to the nearest border, in cells.
+inline float room(float value, int cell) {
+    const float rest = value - static_cast<float>(cell);
+    return std::min(rest, 1 - rest);
+}
+
+/// Rays that the leaping walk's arithmetic is not made for.
+[[gnu::noinline]] TraceResult oddRay(const TracedGrid& grid, const city::Ray& ray, float tMax) {
+    if (!validRay(ray))
+        return {TraceStatus::invalid, std::numeric_limits<float>::quiet_NaN(), glm::ivec2(-1)};
+    return exactWalk(grid, ray, tMax);
+}
+
+}  // namespace
+
+TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
+    const glm::vec3 origin = ray.origin;
+    const glm::vec3 direction = ray.direction;
+    Place x = place(origin.x, grid.origin.x, grid.perCell, grid.width);
+    Place y = place(origin.y, grid.origin.y, grid.perCell, grid.height);
+    const float da = std::abs(direction.x);
+    const float db = std::abs(direction.y);
+    const float fastest = std::max(da, db);
+    const float dz = direction.z * static_cast<float>(grid.cellSize);
+    const float oz = origin.z;
+    // One of the comparisons fails for every NaN.
+    const bool ordinary = ((x.cell | y.cell) >= 0) & (fastest >= leapSlowest) & (da + db <= leapFastest) &
+                          (std::min(da, db) >= negligibleSlope * fastest) & (std::abs(dz) <= leapHighest) &
+                          (std::abs(oz) <= leapHighest) & grid.leaps;
+    if (!ordinary) [[unlikely]]
+        return oddRay(grid, ray, tMax);
+    if (borderline(x.rest) || borderline(y.rest)) [[unlikely]] {
+        x.cell = grid.cellX(origin.x);
+        y.cell = grid.cellY(origin.y);
+        if (x.cell < 0 || x.cell >= grid.width || y.cell < 0 || y.cell >= grid.height)
+            return exactWalk(grid, ray, tMax);
+        x.rest = (static_cast<double>(origin.x) - grid.planeX(x.cell)) * grid.perCell;
+        y.rest = (static_cast<double>(origin.y) - grid.planeY(y.cell)) * grid.perCell;
+    }
+
+    const int west = direction.x < 0;
+    const int south = direction.y < 0;
+    const int signA = 1 - 2 * west;
+    const int signB = 1 - 2 * south;
+    const float fa = static_cast<float>(west + signA * x.rest);
+    const float fb = static_cast<float>(south + signB * y.rest);
+    const float inverseA = 1 / da;
+    const float inverseB = 1 / db;
     const float lateral1 = leapError * fastest;
-    const float lateral0 = lateral1 * inverseMax + 2 * leapError;
+    const float lateral0 = lateral1 * std::max(inverseA, inverseB) + 2 * leapError;
     const float vertical1 = leapError * std::abs(dz);
-    const float vertical0 = vertical1 * inverseMax + leapError * (std::abs(oz) + grid.largest);
-    const float inverseZ = 1 / dz;
+    const float vertical0 =
+        vertical1 * std::max(inverseA, inverseB) + leapError * (std::abs(oz) + grid.largest);
     const bool sinks = dz < 0;
     const float tEnd = tMax * static_cast<float>(grid.perCell) * 1.00001f;
 
-    const OpenRectangles& open = grid.open;
+    const std::size_t start = grid.index(x.cell, y.cell);
     const OpenRectangles::Entry* entries =
-        open.entries.data() + ((west ? 1u : 0u) + (south ? 2u : 0u)) * grid.columns.size();
-    const float* columns = grid.columns.data();
-    const std::ptrdiff_t strideA = west ? -1 : 1;
-    const std::ptrdiff_t strideB = south ? -static_cast<std::ptrdiff_t>(grid.width) : grid.width;
-    const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(grid.index(i0, j0));
-    const int endA = west ? i0 + 1 : grid.width - i0;
-    const int endB = south ? j0 + 1 : grid.height - j0;
+        grid.open.entries.data() + static_cast<std::size_t>(west + 2 * south) * grid.columns.size() + start;
+    const float* columns = grid.columns.data() + start;
+    const std::ptrdiff_t strideA = signA;
+    const std::ptrdiff_t strideB = signB * static_cast<std::ptrdiff_t>(grid.width);
+    const int endA = west ? x.cell + 1 : grid.width - x.cell;
+    const int endB = south ? y.cell + 1 : grid.height - y.cell;
     const TraceResult miss{TraceStatus::miss, std::numeric_limits<float>::infinity(), glm::ivec2(-1)};
 
     int a = 0, b = 0;
     float t = 0;
     EntryFace face = EntryFace::start;
-    bool justSank = false;  // to the level of a rectangle, inside cell (a, b)
     const auto hit = [&](EntryFace through) {
-        const int i = west ? i0 - a : i0 + a;
-        const int j = south ? j0 - b : j0 + b;
+        const int i = x.cell + signA * a;
+        const int j = y.cell + signB * b;
         const float exactT = entryParameter(grid, ray, through, i, j);
         return exactT <= tMax ? TraceResult{TraceStatus::hit, exactT, {i, j}} : miss;
     };
 
     for (;;) {
-        const std::ptrdiff_t at = start + a * strideA + b * strideB;
+        const std::ptrdiff_t at = a * strideA + b * strideB;
         const OpenRectangles::Entry entry = entries[at];
+        const float column = columns[at];
         const float z = oz + t * dz;
         const float vertical = vertical0 + vertical1 * t;
-        float level = open.levelHeight(entry >> 16);
-        int columnsAhead = static_cast<int>(entry & 255);
-        int rowsAhead = static_cast<int>((entry >> 8) & 255);
-        const bool leap = z > level + 4 * vertical && columnsAhead != 0 && !justSank;
-        if (!leap) {
-            level = columns[at];
-            if (!justSank) {
-                if (z <= level - vertical) return hit(face);
-                if (z <= level + vertical) return exactWalk(grid, ray, tMax);
-            }
-            columnsAhead = rowsAhead = 1;
+        const float level = grid.open.levelHeight(entry >> 16);
+        const bool leap = (z > level + 4 * vertical) & ((entry & 255) != 0);
+        if (!leap && z <= column + vertical) {
+            if (z <= column - vertical) return hit(face);
+            return exactWalk(grid, ray, tMax);
         }
-        justSank = false;
-        const int borderA = a + columnsAhead;
-        const int borderB = b + rowsAhead;
-        const float tA = (static_cast<float>(borderA) - fa) * inverseA;
-        const float tB = (static_cast<float>(borderB) - fb) * inverseB;
-        const float tOut = std::min(tA, tB);
-        const float verticalOut = vertical0 + vertical1 * tOut;
-        const float zOut = oz + tOut * dz;
-        if (sinks && zOut <= level + verticalOut) {
-            if (!leap) {
-                if (zOut <= level - verticalOut) return hit(EntryFace::top);
+        int borderA = a + (leap ? static_cast<int>(entry & 255) : 1);
+        int borderB = b + (leap ? static_cast<int>((entry >> 8) & 255) : 1);
+        float tA = (static_cast<float>(borderA) - fa) * inverseA;
+        float tB = (static_cast<float>(borderB) - fb) * inverseB;
+        float tOut = std::min(tA, tB);
+        float zOut = oz + tOut * dz;
+        float verticalOut = vertical0 + vertical1 * tOut;
+        if (sinks && zOut <= (leap ? level : column) + verticalOut) {
+            float reached = column;
+            if (leap) {
+                // To a point certainly above the level, and no farther than the rectangle: the error grows on
+                // the way.
+                t = (level + 3 * vertical - oz) / dz;
+                const float pa = fa + t * da;
+                const float pb = fb + t * db;
+                a = static_cast<int>(pa);
+                b = static_cast<int>(pb);
+                const float clear = std::min(room(pa, a), room(pb, b)) - (lateral0 + lateral1 * t);
+                if (!(clear > 0 && t < tOut)) [[unlikely]]
+                    return exactWalk(grid, ray, tMax);
+                // Most often the cell's column is about as high, and the ray sinks through its top well
+                // before the cell ends: it still has at most `gap` to fall, and `clear` to go.
+                reached = columns[a * strideA + b * strideB];
+                const float gap = level - reached + 4 * vertical;
+                if (gap * fastest < clear * -dz) return hit(EntryFace::top);
+                borderA = a + 1;
+                borderB = b + 1;
+                tA = (static_cast<float>(borderA) - fa) * inverseA;
+                tB = (static_cast<float>(borderB) - fb) * inverseB;
+                tOut = std::min(tA, tB);
+                zOut = oz + tOut * dz;
+                verticalOut = vertical0 + vertical1 * tOut;
+            }
+            if (zOut <= reached + verticalOut) {
+                if (zOut <= reached - verticalOut) return hit(EntryFace::top);
                 return exactWalk(grid, ray, tMax);
             }
-            // To a point certainly above the level, and no farther than the rectangle: the error grows on the
-            // way there.
-            t = (level + 3 * vertical - oz) * inverseZ;
-            if (!(t < tOut)) return exactWalk(grid, ray, tMax);
-            const float pa = fa + t * da;
-            const float pb = fb + t * db;
-            a = static_cast<int>(pa);
-            b = static_cast<int>(pb);
-            const float lateral = lateral0 + lateral1 * t;
-            const float ra = pa - static_cast<float>(a);
-            const float rb = pb - static_cast<float>(b);
-            if (std::min(std::min(ra, 1 - ra), std::min(rb, 1 - rb)) <= lateral)
-                return exactWalk(grid, ray, tMax);
-            justSank = true;
-            continue;
         }
         t = tOut;
-        if (!(t <= tEnd)) return miss;
         const bool byA = tA < tB;
-        const float across = byA ? fb + t * db : fa + t * da;
-        const int cell = static_cast<int>(across);
-        const float rest = across - static_cast<float>(cell);
-        if (std::min(rest, 1 - rest) <= lateral0 + lateral1 * t) return exactWalk(grid, ray, tMax);
-        a = byA ? borderA : cell;
-        b = byA ? cell : borderB;
+        const float pa = fa + t * da;
+        const float pb = fb + t * db;
+        const int cellA = static_cast<int>(pa);
+        const int cellB = static_cast<int>(pb);
+        // Across the border that is being crossed the cell is known; only the other coordinate has to be
+        // certain.
+        const float lateral = lateral0 + lateral1 * t;
+        if (!((room(pa, cellA) > lateral) | byA) | !((room(pb, cellB) > lateral) | !byA)) [[unlikely]]
+            return exactWalk(grid, ray, tMax);
+        a = byA ? borderA : cellA;
+        b = byA ? cellB : borderB;
         face = byA ? EntryFace::x : EntryFace::y;
-        if (a >= endA || b >= endB) return miss;
-        if (!sinks && zOut - verticalOut > grid.top) return miss;
+        if ((a >= endA) | (b >= endB) | !(t <= tEnd)) return miss;
+        if (!sinks & (zOut - verticalOut > grid.top)) return miss;
     }
 }
 

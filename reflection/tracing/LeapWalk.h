@@ -38,7 +38,7 @@ constexpr float leapSlowest = 0x1p-40f;
 constexpr float leapFastest = 0x1p40f;
 constexpr float leapHighest = 0x1p60f;  ///< of |oz| and |dz|
 
-/// Walks `ray`, which must be valid. Cost: about 20 ns in a street.
+/// Walks any ray, valid or not. Cost: about 20 ns in a street.
 TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax);
 
 /// Is every component finite and the direction not zero?
