@@ -42,17 +42,23 @@ GridTracer::GridTracer(const city::Heightfield& field) {
     grid->cellSize = field.cellSize();
     grid->perCell = 1 / grid->cellSize;
     grid->origin = origin;
-    grid->columns.assign(field.cells().begin(), field.cells().end());
+    const std::size_t tilesX = (static_cast<std::size_t>(grid->width) + 3) / 4;
+    const std::size_t tilesY = (static_cast<std::size_t>(grid->height) + 3) / 4;
+    grid->tileRow = tilesX * 16;
+    grid->columns = LargeArray<float>(tilesY * grid->tileRow);
+    std::fill_n(grid->columns.data(), grid->columns.size(), -std::numeric_limits<float>::infinity());
     grid->top = -std::numeric_limits<float>::infinity();
     float bottom = std::numeric_limits<float>::infinity();
-    for (float& h : grid->columns) {
-        if (std::isnan(h)) h = -std::numeric_limits<float>::infinity();
-        grid->top = std::max(grid->top, h);
-        if (std::isfinite(h)) {
+    for (int j = 0; j < grid->height; ++j)
+        for (int i = 0; i < grid->width; ++i) {
+            const float h = field.at(i, j);
+            if (std::isnan(h)) continue;
+            grid->columns[grid->index(i, j)] = h;
+            grid->top = std::max(grid->top, h);
+            if (!std::isfinite(h)) continue;
             bottom = std::min(bottom, h);
             grid->largest = std::max(grid->largest, std::abs(h));
         }
-    }
     grid->bottom = std::isfinite(bottom) ? bottom : 0;
     // Borders that rounding shifts by no more than 2^-30 of a cell, heights far from overflow, indices of 31
     // bits.

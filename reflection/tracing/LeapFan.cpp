@@ -36,17 +36,59 @@ struct FanStart {
     float fuMirrored, fvMirrored;  ///< 1 - fu, 1 - fv, rounded from double
 };
 
-struct Outcome {
-    alignas(64) std::int32_t face[widest];  ///< an EntryFace, or one of the below
-    alignas(64) std::int32_t a[widest];
-    alignas(64) std::int32_t b[widest];
-};
 constexpr int missed = 16;
 constexpr int undecided = 17;
 
-/// Walks one vector of rays. The comments of leapWalk apply line by line.
-void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome) {
+/// entryParameter for the hits of one vector of rays. `a` and `b` are cells passed, `column` is wanted where
+/// face is top.
+void finish(const FanStart& fan, const float* dx, const float* dy, const float* dz, const std::int32_t* face,
+            const std::int32_t* a, const std::int32_t* b, const float* column, float* t) {
+    const hn::ScalableTag<double> d;
+    const hn::Rebind<float, decltype(d)> f;
+    const hn::Rebind<std::int32_t, decltype(d)> i;
+    const TracedGrid& grid = fan.grid;
+    const auto zero = hn::Zero(d);
+    const auto cellSize = hn::Set(d, grid.cellSize);
+    // The border crossed last, in cells of the grid: the start's own border and as many onwards as cells were
+    // passed.
+    const auto crossing = [&](const std::int32_t* passed, int start, auto direction, double first,
+                              float from) {
+        const auto count = hn::PromoteTo(d, hn::Load(i, passed));
+        const auto border = hn::IfThenElse(hn::Lt(direction, zero), hn::Sub(hn::Set(d, start + 1.0), count),
+                                           hn::Add(hn::Set(d, static_cast<double>(start)), count));
+        const auto plane = hn::Add(hn::Set(d, first), hn::Mul(border, cellSize));
+        return hn::Sub(plane, hn::Set(d, static_cast<double>(from)));
+    };
+    for (std::size_t k = 0; k < hn::Lanes(Floats()); k += hn::Lanes(d)) {
+        const auto code = hn::PromoteTo(d, hn::Load(i, face + k));
+        const auto is = [&](EntryFace which) { return hn::Eq(code, hn::Set(d, static_cast<double>(which))); };
+        const auto directionX = hn::PromoteTo(d, hn::LoadU(f, dx + k));
+        const auto directionY = hn::PromoteTo(d, hn::LoadU(f, dy + k));
+        auto length =
+            hn::Sub(hn::PromoteTo(d, hn::Load(f, column + k)), hn::Set(d, static_cast<double>(fan.origin.z)));
+        auto speed = hn::PromoteTo(d, hn::LoadU(f, dz + k));
+        length = hn::IfThenElse(is(EntryFace::x),
+                                crossing(a + k, fan.i0, directionX, grid.origin.x, fan.origin.x), length);
+        speed = hn::IfThenElse(is(EntryFace::x), directionX, speed);
+        length = hn::IfThenElse(is(EntryFace::y),
+                                crossing(b + k, fan.j0, directionY, grid.origin.y, fan.origin.y), length);
+        speed = hn::IfThenElse(is(EntryFace::y), directionY, speed);
+        auto result = hn::Add(hn::Div(length, speed), zero);
+        result = hn::IfThenElse(is(EntryFace::start), zero, result);
+        result = hn::IfThenElse(hn::Ge(code, hn::Set(d, static_cast<double>(missed))),
+                                hn::Set(d, std::numeric_limits<double>::infinity()), result);
+        hn::Store(hn::DemoteTo(f, result), f, t + k);
+    }
+}
+
+/// Walks one vector of rays; t is aligned. Returns whether some are undecided, with their `face` so marked.
+/// The comments of leapWalk apply line by line.
+bool walkVector(const FanStart& fan, const float* directionX, const float* directionY,
+                const float* directionZ, std::int32_t* faces, float* parameters) {
     const Floats f;
+    const VF dx = hn::LoadU(f, directionX);
+    const VF dy = hn::LoadU(f, directionY);
+    const VF dzWorld = hn::LoadU(f, directionZ);
     const Ints i;
     const Bits u;
     const TracedGrid& grid = fan.grid;
@@ -93,18 +135,28 @@ void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome)
                              hn::Set(f, static_cast<float>(undecided)));
 
     const auto cells = static_cast<std::int32_t>(grid.columns.size());
-    const VI strideA = hn::IfThenElse(hn::RebindMask(i, west), hn::Set(i, -1), oneInt);
-    const VI strideB =
-        hn::IfThenElse(hn::RebindMask(i, south), hn::Set(i, -grid.width), hn::Set(i, grid.width));
+    const VI signA = hn::IfThenElse(hn::RebindMask(i, west), hn::Set(i, -1), oneInt);
+    const VI signB = hn::IfThenElse(hn::RebindMask(i, south), hn::Set(i, -1), oneInt);
+    const VI i0 = hn::Set(i, fan.i0);
+    const VI j0 = hn::Set(i, fan.j0);
+    const VI three = hn::Set(i, 3);
+    const VI tileRow = hn::Set(i, static_cast<std::int32_t>(grid.tileRow));
+    const auto indexOf = [&](VI passedA, VI passedB) {  // TracedGrid::index
+        const VI x = hn::Add(i0, hn::Mul(signA, passedA));
+        const VI y = hn::Add(j0, hn::Mul(signB, passedB));
+        const VI inTile = hn::Sub(hn::And(y, three), hn::And(x, three));
+        const VI row = hn::Mul(hn::ShiftRight<2>(y), tileRow);
+        return hn::Add(hn::Add(row, hn::And(x, three)), hn::ShiftLeft<2>(hn::Add(x, inTile)));
+    };
     const VI endA =
         hn::IfThenElse(hn::RebindMask(i, west), hn::Set(i, fan.i0 + 1), hn::Set(i, grid.width - fan.i0));
     const VI endB =
         hn::IfThenElse(hn::RebindMask(i, south), hn::Set(i, fan.j0 + 1), hn::Set(i, grid.height - fan.j0));
-    const VI start = hn::Set(i, static_cast<std::int32_t>(grid.index(fan.i0, fan.j0)));
     const VI quadrant = hn::Add(hn::IfThenElseZero(hn::RebindMask(i, west), hn::Set(i, cells)),
                                 hn::IfThenElseZero(hn::RebindMask(i, south), hn::Set(i, 2 * cells)));
     const VF levelBase = hn::Set(f, grid.open.base);
     const VF levelStep = hn::Set(f, grid.open.step);
+    const VI lift = hn::Set(i, grid.open.lift);
     const VF top = hn::Set(f, grid.top);
 
     VI a = hn::Zero(i);
@@ -118,17 +170,24 @@ void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome)
     };
 
     while (!hn::AllFalse(f, active)) {
-        const VI cell = hn::Add(start, hn::Add(hn::Mul(a, strideA), hn::Mul(b, strideB)));
-        const auto entry = hn::GatherIndex(u, grid.open.entries.data(), hn::Add(cell, quadrant));
+        const VI cell = indexOf(a, b);
+        const VI entry =
+            hn::BitCast(i, hn::GatherIndex(u, grid.open.entries.data(), hn::Add(cell, quadrant)));
         const VF z = hn::Add(oz, hn::Mul(t, dz));
         const VF vertical = hn::Add(vertical0, hn::Mul(vertical1, t));
-        VF level = hn::Add(levelBase,
-                           hn::Mul(hn::ConvertTo(f, hn::BitCast(i, hn::ShiftRight<16>(entry))), levelStep));
-        VI aheadA = hn::BitCast(i, hn::And(entry, hn::Set(u, 255)));
-        VI aheadB = hn::BitCast(i, hn::And(hn::ShiftRight<8>(entry), hn::Set(u, 255)));
-        MF leap = hn::And(hn::Gt(z, hn::Add(level, hn::Mul(hn::Set(f, 4.0f), vertical))),
-                          hn::RebindMask(f, hn::Gt(aheadA, hn::Zero(i))));
+        const VI own = hn::BitCast(i, hn::ShiftRight<16>(hn::BitCast(u, entry)));
+        const VI lifted = hn::Add(own, hn::Mul(hn::And(hn::ShiftRight<12>(entry), hn::Set(i, 15)), lift));
+        VF level = hn::Add(levelBase, hn::Mul(hn::ConvertTo(f, lifted), levelStep));
+        VI aheadA = hn::And(entry, hn::Set(i, 63));
+        VI aheadB = hn::And(hn::ShiftRight<6>(entry), hn::Set(i, 63));
+        const MF known = hn::RebindMask(f, hn::Gt(aheadA, hn::Zero(i)));
+        MF leap = hn::And(hn::Gt(z, hn::Add(level, hn::Mul(hn::Set(f, 4.0f), vertical))), known);
         leap = hn::AndNot(justSank, leap);
+        const VF ownHeight = hn::Add(levelBase, hn::Mul(hn::ConvertTo(f, own), levelStep));
+        MF wall = hn::And(hn::Le(z, hn::Sub(hn::Sub(ownHeight, levelStep), vertical)), known);
+        wall = hn::AndNot(justSank, hn::And(wall, active));
+        face = hn::IfThenElse(wall, lastFace, face);
+        active = hn::AndNot(wall, active);
         const MF single = hn::AndNot(leap, active);
         if (!hn::AllFalse(f, single)) {
             const VF column = hn::GatherIndex(f, grid.columns.data(), cell);
@@ -138,9 +197,9 @@ void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome)
             const MF fresh = hn::AndNot(justSank, single);
             const MF notAbove = hn::And(fresh, hn::Le(z, hn::Add(column, vertical)));
             if (!hn::AllFalse(f, notAbove)) {
-                const MF wall = hn::And(notAbove, hn::Le(z, hn::Sub(column, vertical)));
+                const MF inside = hn::And(notAbove, hn::Le(z, hn::Sub(column, vertical)));
                 face = hn::IfThenElse(notAbove, hn::Set(f, static_cast<float>(undecided)), face);
-                face = hn::IfThenElse(wall, lastFace, face);
+                face = hn::IfThenElse(inside, lastFace, face);
                 active = hn::AndNot(notAbove, active);
             }
         }
@@ -178,7 +237,8 @@ void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome)
         const MF throughB = hn::AndNot(byA, leaves);
         const VF nearA = hn::IfThenElse(throughA, one, hn::Min(ra, hn::Sub(one, ra)));
         const VF nearB = hn::IfThenElse(throughB, one, hn::Min(rb, hn::Sub(one, rb)));
-        MF unclear = hn::Not(hn::Gt(hn::Min(nearA, nearB), lateral));
+        const VF room = hn::Sub(hn::Min(nearA, nearB), lateral);
+        MF unclear = hn::Not(hn::Gt(room, zero));
         unclear = hn::Or(unclear, hn::Not(hn::Le(tNext, tOut)));
         settle(hn::And(active, unclear), undecided);
         const VI nextA = hn::IfThenElse(hn::RebindMask(i, throughA), borderA, ca);
@@ -190,14 +250,28 @@ void walkVector(const FanStart& fan, VF dx, VF dy, VF dzWorld, Outcome& outcome)
 
         a = hn::IfThenElse(hn::RebindMask(i, active), nextA, a);
         b = hn::IfThenElse(hn::RebindMask(i, active), nextB, b);
+        const MF sank = hn::And(active, descends);
+        if (!hn::AllFalse(f, sank)) {
+            // Through the top of the cell below well before its border?
+            const VF column = hn::GatherIndex(f, grid.columns.data(), indexOf(a, b));
+            const VF gap = hn::Add(hn::Sub(level, column), hn::Mul(hn::Set(f, 4.0f), vertical));
+            const MF lands = hn::And(sank, hn::Lt(hn::Mul(gap, fastest), hn::Mul(room, hn::Neg(dz))));
+            settle(lands, static_cast<int>(EntryFace::top));
+        }
         t = tNext;
         lastFace = hn::IfThenElse(byA, hn::Set(f, static_cast<float>(EntryFace::x)),
                                   hn::Set(f, static_cast<float>(EntryFace::y)));
         justSank = descends;
     }
-    hn::Store(hn::ConvertTo(i, face), i, outcome.face);
-    hn::Store(a, i, outcome.a);
-    hn::Store(b, i, outcome.b);
+    alignas(64) std::int32_t passedA[widest];
+    alignas(64) std::int32_t passedB[widest];
+    alignas(64) float columns[widest];
+    hn::Store(a, i, passedA);
+    hn::Store(b, i, passedB);
+    hn::Store(hn::GatherIndex(f, grid.columns.data(), indexOf(a, b)), f, columns);
+    hn::Store(hn::ConvertTo(i, face), i, faces);
+    finish(fan, directionX, directionY, directionZ, faces, passedA, passedB, columns, parameters);
+    return !hn::AllFalse(f, hn::Eq(face, hn::Set(f, static_cast<float>(undecided))));
 }
 
 void fan(const TracedGrid& grid, const glm::vec3& origin, const float* dx, const float* dy, const float* dz,
@@ -211,8 +285,9 @@ void fan(const TracedGrid& grid, const glm::vec3& origin, const float* dx, const
     start.fv = static_cast<float>(fv);
     start.fuMirrored = static_cast<float>(1 - fu);
     start.fvMirrored = static_cast<float>(1 - fv);
-    Outcome outcome;
     alignas(64) float padded[3][widest];
+    alignas(64) float parameters[widest];
+    alignas(64) std::int32_t faces[widest];
     for (std::size_t first = 0; first < count; first += lanes) {
         const std::size_t used = std::min(lanes, count - first);
         const float* d[3] = {dx + first, dy + first, dz + first};
@@ -221,20 +296,11 @@ void fan(const TracedGrid& grid, const glm::vec3& origin, const float* dx, const
                 for (std::size_t k = 0; k < lanes; ++k) padded[c][k] = d[c][std::min(k, used - 1)];
                 d[c] = padded[c];
             }
-        walkVector(start, hn::LoadU(f, d[0]), hn::LoadU(f, d[1]), hn::LoadU(f, d[2]), outcome);
-        for (std::size_t k = 0; k < used; ++k) {
-            const city::Ray ray{origin, {d[0][k], d[1][k], d[2][k]}};
-            const int face = outcome.face[k];
-            float result = std::numeric_limits<float>::infinity();
-            if (face < missed) {
-                const int ci = ray.direction.x < 0 ? start.i0 - outcome.a[k] : start.i0 + outcome.a[k];
-                const int cj = ray.direction.y < 0 ? start.j0 - outcome.b[k] : start.j0 + outcome.b[k];
-                result = entryParameter(grid, ray, static_cast<EntryFace>(face), ci, cj);
-            } else if (face == undecided) {
-                result = exactAnswer(grid, ray);
-            }
-            t[first + k] = result;
-        }
+        if (walkVector(start, d[0], d[1], d[2], faces, parameters))
+            for (std::size_t k = 0; k < used; ++k)
+                if (faces[k] == undecided)
+                    parameters[k] = exactAnswer(grid, {origin, {d[0][k], d[1][k], d[2][k]}});
+        std::copy_n(parameters, used, t + first);
     }
 }
 

@@ -95,12 +95,13 @@ TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
     const bool sinks = dz < 0;
     const float tEnd = tMax * static_cast<float>(grid.perCell) * 1.00001f;
 
-    const std::size_t start = grid.index(x.cell, y.cell);
+    const OpenRectangles& open = grid.open;
     const OpenRectangles::Entry* entries =
-        grid.open.entries.data() + static_cast<std::size_t>(west + 2 * south) * grid.columns.size() + start;
-    const float* columns = grid.columns.data() + start;
-    const std::ptrdiff_t strideA = signA;
-    const std::ptrdiff_t strideB = signB * static_cast<std::ptrdiff_t>(grid.width);
+        open.entries.data() + static_cast<std::size_t>(west + 2 * south) * grid.columns.size();
+    const float* columns = grid.columns.data();
+    const auto indexOf = [&](int passedA, int passedB) {
+        return grid.index(x.cell + signA * passedA, y.cell + signB * passedB);
+    };
     const int endA = west ? x.cell + 1 : grid.width - x.cell;
     const int endB = south ? y.cell + 1 : grid.height - y.cell;
     const TraceResult miss{TraceStatus::miss, std::numeric_limits<float>::infinity(), glm::ivec2(-1)};
@@ -116,26 +117,34 @@ TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
     };
 
     for (;;) {
-        const std::ptrdiff_t at = a * strideA + b * strideB;
+        const std::size_t at = indexOf(a, b);
         const OpenRectangles::Entry entry = entries[at];
-        const float column = columns[at];
         const float z = oz + t * dz;
         const float vertical = vertical0 + vertical1 * t;
-        const float level = grid.open.levelHeight(entry >> 16);
-        const bool leap = (z > level + 4 * vertical) & ((entry & 255) != 0);
-        if (!leap && z <= column + vertical) {
-            if (z <= column - vertical) return hit(face);
-            return exactWalk(grid, ray, tMax);
+        const int own = static_cast<int>(entry >> 16);
+        const int width = static_cast<int>(entry & 63);
+        const float ownHeight = open.levelHeight(own);
+        const float level = open.levelHeight(own + static_cast<int>((entry >> 12) & 15) * open.lift);
+        const bool leap = (z > level + 4 * vertical) & (width != 0);
+        float floor = level;
+        if (!leap) {
+            // The column is less than a step below its level: a wall is known without a look at it.
+            if ((z <= ownHeight - open.step - vertical) & (width != 0)) return hit(face);
+            floor = columns[at];
+            if (z <= floor + vertical) {
+                if (z <= floor - vertical) return hit(face);
+                return exactWalk(grid, ray, tMax);
+            }
         }
-        int borderA = a + (leap ? static_cast<int>(entry & 255) : 1);
-        int borderB = b + (leap ? static_cast<int>((entry >> 8) & 255) : 1);
+        int borderA = a + (leap ? width : 1);
+        int borderB = b + (leap ? static_cast<int>((entry >> 6) & 63) : 1);
         float tA = (static_cast<float>(borderA) - fa) * inverseA;
         float tB = (static_cast<float>(borderB) - fb) * inverseB;
         float tOut = std::min(tA, tB);
         float zOut = oz + tOut * dz;
         float verticalOut = vertical0 + vertical1 * tOut;
-        if (sinks && zOut <= (leap ? level : column) + verticalOut) {
-            float reached = column;
+        if (sinks && zOut <= floor + verticalOut) {
+            float reached = floor;
             if (leap) {
                 // To a point certainly above the level, and no farther than the rectangle: the error grows on
                 // the way.
@@ -149,7 +158,7 @@ TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
                     return exactWalk(grid, ray, tMax);
                 // Most often the cell's column is about as high, and the ray sinks through its top well
                 // before the cell ends: it still has at most `gap` to fall, and `clear` to go.
-                reached = columns[a * strideA + b * strideB];
+                reached = columns[indexOf(a, b)];
                 const float gap = level - reached + 4 * vertical;
                 if (gap * fastest < clear * -dz) return hit(EntryFace::top);
                 borderA = a + 1;

@@ -17,17 +17,18 @@ namespace {
 /// end it, but a ray that sinks below the level walks cell by cell.
 constexpr float bandMetres = 0.25f;
 constexpr float bandPerCellSize = 0.25f;
-/// Longest leap in cells. Farther ones are rare in streets, and the search below looks at as many rows.
-constexpr int longest = 64;
+constexpr int longest = OpenRectangles::longest;
 constexpr int highestLevel = 65534;
 constexpr int endless = 65535;  ///< a column without a top
 
 /// Level of each cell: the lowest whose height, as the walks compute it, is not below the column.
 std::vector<std::uint16_t> levelsOf(const TracedGrid& grid, const OpenRectangles& scale) {
-    std::vector<std::uint16_t> levels(grid.columns.size());
+    std::vector<std::uint16_t> levels(static_cast<std::size_t>(grid.width) *
+                                      static_cast<std::size_t>(grid.height));
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, levels.size(), 65536), [&](const auto& range) {
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
-            const float h = grid.columns[k];
+            const std::size_t width = static_cast<std::size_t>(grid.width);
+            const float h = grid.column(static_cast<int>(k % width), static_cast<int>(k / width));
             if (h == std::numeric_limits<float>::infinity()) {
                 levels[k] = endless;
                 continue;
@@ -36,8 +37,8 @@ std::vector<std::uint16_t> levelsOf(const TracedGrid& grid, const OpenRectangles
             if (h > scale.base) {
                 level = static_cast<int>(
                     std::min((h - scale.base) / scale.step, static_cast<float>(highestLevel)));
-                while (level > 0 && scale.levelHeight(static_cast<std::uint32_t>(level - 1)) >= h) --level;
-                while (level < endless && scale.levelHeight(static_cast<std::uint32_t>(level)) < h) ++level;
+                while (level > 0 && scale.levelHeight(level - 1) >= h) --level;
+                while (level < endless && scale.levelHeight(level) < h) ++level;
             }
             levels[k] = static_cast<std::uint16_t>(level);
         }
@@ -80,8 +81,8 @@ void findRuns(const std::uint16_t* levels, int width, int step, int band, Run* r
 OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     OpenRectangles result;
     float top = grid.bottom;
-    for (float h : grid.columns)
-        if (std::isfinite(h)) top = std::max(top, h);
+    for (std::size_t k = 0; k < grid.columns.size(); ++k)
+        if (std::isfinite(grid.columns[k])) top = std::max(top, grid.columns[k]);
     result.base = grid.bottom;
     // A little coarser than range / highestLevel, so that the top fits in spite of rounding.
     result.step = std::max((top - grid.bottom) / 65000.0f, 1e-4f);
@@ -93,28 +94,37 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     const float bandHeight = std::max(bandMetres, bandPerCellSize * static_cast<float>(grid.cellSize));
     const int band = static_cast<int>(std::min(bandHeight / result.step, 60000.0f));
     std::vector<Run> runs(levels.size());
-    result.entries.resize(4 * levels.size());
+    // A rectangle's level is at most two bands above its corner: the limit of a row's own run, which starts
+    // within the band.
+    constexpr int lifts = 15;
+    result.lift = std::max(1, (2 * band + lifts - 1) / lifts);
+    result.entries = LargeArray<OpenRectangles::Entry>(4 * grid.columns.size());
+    const auto rowStart = [&](int j) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
+    };
 
     for (int q = 0; q < 4; ++q) {
         const int stepX = (q & 1) != 0 ? -1 : 1;
         const int stepY = (q & 2) != 0 ? -1 : 1;
-        OpenRectangles::Entry* entries = result.entries.data() + static_cast<std::size_t>(q) * levels.size();
+        OpenRectangles::Entry* entries =
+            result.entries.data() + static_cast<std::size_t>(q) * grid.columns.size();
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
             for (int j = range.begin(); j != range.end(); ++j)
-                findRuns(&levels[grid.index(0, j)], width, stepX, band, &runs[grid.index(0, j)]);
+                findRuns(&levels[rowStart(j)], width, stepX, band, &runs[rowStart(j)]);
         });
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
             for (int j = range.begin(); j != range.end(); ++j) {
                 const int rows = std::min(longest, stepY > 0 ? height - j : j + 1);
                 for (int i = 0; i < width; ++i) {
-                    const std::size_t corner = grid.index(i, j);
-                    if (levels[corner] == endless) continue;  // entry 0: no leap
+                    const std::size_t corner = rowStart(j) + static_cast<std::size_t>(i);
+                    // Entry 0 for endless and empty columns.
+                    if (levels[corner] == endless || !std::isfinite(grid.column(i, j))) continue;
                     const int limit = levels[corner] + band;
                     // Of all rectangles in the staircase of runs, the one with the longest leap averaged over
                     // directions: w h / (w + h) ranks them nearly as the integral of min(w / cos, h / sin)
                     // does.
                     int narrowest = longest;
-                    int highest = 0;
+                    int highest = levels[corner];
                     int bestWidth = 1, bestHeight = 1, bestLevel = levels[corner];
                     const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(stepY) * width;
                     std::ptrdiff_t at = static_cast<std::ptrdiff_t>(corner);
@@ -133,9 +143,11 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
                         // Even with all rows left, nothing this narrow can win any more.
                         if (narrowest * rows * bestSum <= best * (narrowest + rows)) break;
                     }
-                    entries[corner] = static_cast<OpenRectangles::Entry>(bestWidth) |
-                                      static_cast<OpenRectangles::Entry>(bestHeight) << 8 |
-                                      static_cast<OpenRectangles::Entry>(bestLevel) << 16;
+                    const int lift = (bestLevel - levels[corner] + result.lift - 1) / result.lift;
+                    entries[grid.index(i, j)] = static_cast<OpenRectangles::Entry>(bestWidth) |
+                                                static_cast<OpenRectangles::Entry>(bestHeight) << 6 |
+                                                static_cast<OpenRectangles::Entry>(lift) << 12 |
+                                                static_cast<OpenRectangles::Entry>(levels[corner]) << 16;
                 }
             }
         });

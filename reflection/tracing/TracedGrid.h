@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/vec2.hpp>
-#include <vector>
 
 #include "city/terrain/Heightfield.h"
+#include "reflection/tracing/LargeArray.h"
 #include "reflection/tracing/OpenRectangles.h"
 
 namespace reflection {
@@ -14,14 +14,16 @@ namespace reflection {
 struct TracedGrid {
     int width = 0;
     int height = 0;
-    double cellSize = 1;         ///< metres; a float's value
-    double perCell = 1;          ///< 1 / cellSize
-    glm::dvec2 origin{0};        ///< south-west corner, world metres
-    float top = 0;               ///< highest column, -infinity when all are empty; may be +infinity
-    float bottom = 0;            ///< lowest column that is neither empty nor endless; 0 when there is none
-    float largest = 0;           ///< largest absolute height of those
-    std::vector<float> columns;  ///< row-major; empty ones at -infinity, never NaN
-    bool leaps = false;          ///< is `open` filled, and are the borders regular enough for LeapWalk?
+    double cellSize = 1;   ///< metres; a float's value
+    double perCell = 1;    ///< 1 / cellSize
+    glm::dvec2 origin{0};  ///< south-west corner, world metres
+    float top = 0;         ///< highest column, -infinity when all are empty; may be +infinity
+    float bottom = 0;      ///< lowest column that is neither empty nor endless; 0 when there is none
+    float largest = 0;     ///< largest absolute height of those
+    LargeArray<float>
+        columns;  ///< by `index`; empty ones, and those that fill the last tiles, at -infinity; never NaN
+    std::size_t tileRow = 0;  ///< cells in a row of tiles
+    bool leaps = false;       ///< is `open` filled, and are the borders regular enough for LeapWalk?
     OpenRectangles open;
 
     /// Cell borders. These doubles *are* the borders: i * cellSize is exact (at most 17 + 24 bits), the sum
@@ -32,8 +34,10 @@ struct TracedGrid {
     /// it.
     int cellX(double x) const { return cellOf(x, origin.x, width); }
     int cellY(double y) const { return cellOf(y, origin.y, height); }
+    /// Tiles of 4 x 4 cells, row by row, and so are the cells in a tile: 16 neighbours share a cache line.
     std::size_t index(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+        return static_cast<std::size_t>(j >> 2) * tileRow +
+               static_cast<std::size_t>((j & 3) * 4 + 4 * i - 3 * (i & 3));
     }
     float column(int i, int j) const { return columns[index(i, j)]; }
 
