@@ -12,19 +12,19 @@
 namespace vehicles {
 
 void addGlass(Shell& half, const Field& region, float seal) {
-    half.refine(region, 0.035f);
+    half.refine(region, 0.02f);
     half.assign(grown(region, seal), Surface::trim);
     half.assign(region, Surface::glass);
     half.recess(grown(region, 1e-4f), 0.004f);
 }
 
 void addGap(Shell& half, const Field& field) {
-    half.refine(field, 0.06f);
+    half.refine(field, 0.03f);
     half.assignLine(field, 0.004f, Surface::trim, {Surface::paint});
 }
 
 void addPanel(Shell& half, const Field& region, Surface surface, float edge, Surface edgeSurface) {
-    half.refine(region, 0.035f);
+    half.refine(region, 0.02f);
     if (edge > 0) half.assign(grown(region, edge), edgeSurface);
     half.assign(region, surface);
 }
@@ -72,9 +72,13 @@ VehicleModel assemble(const Assembly& plan, Shell half, const city::Mesh& parts,
             model.wheels.push_back({{plan.axles[i], side * plan.track / 2, plan.wheel.radius},
                                     !plan.noneSteer && (plan.allSteer || i == 0),
                                     side < 0});
-    half.simplify(plan.triangles / 2, 0.0015f);
+    // A symmetric body is simplified as a half, so that it stays symmetric.
+    if (!lastCuts) half.simplify(plan.triangles / 2, plan.tolerance);
     half.mirror();
-    if (lastCuts) lastCuts(half);
+    if (lastCuts) {
+        lastCuts(half);
+        half.simplify(plan.triangles, plan.tolerance);
+    }
     VehicleModel::Level level;
     level.body = half.mesh();
     city::Mesh sides = parts;
@@ -82,7 +86,7 @@ VehicleModel assemble(const Assembly& plan, Shell half, const city::Mesh& parts,
     level.body.append(sides);
     level.body.append(oneSided);
     model.levels.push_back(std::move(level));
-    makeLevels(model, plainWheelMesh(plan.wheel, 10));
+    makeLevels(model);
     return model;
 }
 

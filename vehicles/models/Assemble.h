@@ -33,8 +33,9 @@ struct Assembly {
     std::string name;
     float length = 0, width = 0, height = 0, track = 0;
     WheelShape wheel;
-    std::vector<float> axles;      ///< x, the first one steers
-    std::size_t triangles = 9000;  ///< of the finest body's shell
+    std::vector<float> axles;       ///< x, the first one steers
+    std::size_t triangles = 11000;  ///< at least, of the finest body's shell
+    float tolerance = 0.0006f;  ///< metres by which the shell may be simplified; more shows as facets in reflections
     bool allSteer = false, noneSteer = false;
 };
 VehicleModel assemble(const Assembly& plan, Shell half, const city::Mesh& parts, const city::Mesh& oneSided,

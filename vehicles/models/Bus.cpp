@@ -128,12 +128,12 @@ void drawDoors(Shell& shell) {
                                                 {x + half + .05f, 2.66f},
                                                 {x - half - .05f, 2.66f}},
                                                .04f));
-        shell.refine(frame, .12f);
+        shell.refine(frame, .06f);
         shell.assign(frame, Surface::trim);
         for (const float side : {-1.0f, 1.0f}) {
             const float a = x + side * .025f, b = x + side * half;
             const Field pane = onTheRight(Outline({{a, .46f}, {b, .46f}, {b, 2.58f}, {a, 2.58f}}, .05f));
-            shell.refine(pane, .10f);
+            shell.refine(pane, .06f);
             shell.assign(pane, Surface::glass);
         }
     }
@@ -149,7 +149,8 @@ VehicleModel bus() {
                   .track = 2.12f,
                   .wheel = {.radius = .48f, .width = .29f, .rimRadius = .30f, .spokes = 0},
                   .axles = {front, rear},
-                  .triangles = 10000};
+                  .triangles = 10000,
+                  .tolerance = 0.0015f};
     Shell half = subdivide(
         cage(), {.rear = -6.35f, .front = 5.65f, .width = plan.width, .floor = .28f, .top = 3.02f}, 3);
     city::Mesh parts, single;

@@ -161,7 +161,7 @@ void drawLines(Shell& half) {
     // Windows.
     addGlass(
         half,
-        inFrontView(Outline({{-.3f, 1.035f}, {.60f, 1.035f}, {.53f, 1.375f}, {-.3f, 1.395f}}, .06f), .05f));
+        inFrontView(Outline({{-.3f, 1.035f}, {.60f, 1.035f}, {.53f, 1.375f}, {-.3f, 1.395f}}, .06f), -.12f));
     const Field daylight = inSideView(Outline({{{.66f, .978f}, .03f},
                                                {{.05f, 1.325f}, .08f},
                                                {{-.40f, 1.362f}, .2f},
@@ -170,8 +170,11 @@ void drawLines(Shell& half) {
                                                {{-1.46f, 1.025f}, .05f}}),
                                       .4f, .93f);
     half.refine(daylight, 0.035f);
-    half.assign(grown(both(daylight, below(.999f, -.023f)), .020f), Surface::chrome);
     half.assign(grown(daylight, .010f), Surface::trim);
+    addPanel(half,
+             inSideView(Outline({{.60f, .958f}, {.60f, .970f}, {-1.42f, 1.016f}, {-1.42f, 1.002f}}, .004f),
+                        .4f, .9f),
+             Surface::chrome);
     addGlass(half,
              inSideView(Outline({{{.60f, .995f}, .02f},
                                  {{.04f, 1.312f}, .06f},

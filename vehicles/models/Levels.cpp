@@ -6,7 +6,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <tuple>
+
+#include "vehicles/models/Wheel.h"
 
 namespace vehicles {
 namespace {
@@ -78,24 +82,73 @@ city::Mesh withoutSmallPieces(const city::Mesh& mesh, float size, bool withInter
     return out;
 }
 
-/// One material for vertices of one position would be needed to move surfaces' borders; instead, each
-/// simplification may give up borders by painting triangles of small surfaces like their largest neighbour.
-/// Here: all trim lines become paint.
-city::Mesh simplified(const city::Mesh& mesh, std::size_t triangles, bool sloppy) {
+city::Mesh simplified(const city::Mesh& mesh, std::size_t triangles) {
     city::Mesh out;
+    if (mesh.empty()) return out;
     out.vertices = mesh.vertices;
     out.indices.resize(mesh.indices.size());
-    const float* positions = &mesh.vertices[0].position.x;
-    std::size_t count = 0;
-    if (sloppy)
-        count =
-            meshopt_simplifySloppy(out.indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
-                                   vertexCount(mesh), sizeof(city::Vertex), triangles * 3, 1.0f, nullptr);
-    else
-        count = meshopt_simplify(out.indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
-                                 vertexCount(mesh), sizeof(city::Vertex), triangles * 3, 1.0f, 0, nullptr);
-    out.indices.resize(count);
+    out.indices.resize(meshopt_simplify(out.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                                        &mesh.vertices[0].position.x, vertexCount(mesh), sizeof(city::Vertex),
+                                        triangles * 3, 1.0f, 0, nullptr));
     return out;
+}
+
+/// Triangles given corner by corner, equal corners shared.
+city::Mesh indexed(const std::vector<city::Vertex>& corners) {
+    city::Mesh out;
+    if (corners.empty()) return out;
+    out.indices.resize(corners.size());
+    out.vertices.resize(meshopt_generateVertexRemap(out.indices.data(), nullptr, corners.size(),
+                                                    corners.data(), corners.size(), sizeof(city::Vertex)));
+    meshopt_remapVertexBuffer(out.vertices.data(), corners.data(), corners.size(), sizeof(city::Vertex),
+                              out.indices.data());
+    return out;
+}
+
+/// Simplified without regard to surfaces; each triangle then takes the surface nearest to its middle.
+city::Mesh simplifiedAcross(const city::Mesh& mesh, std::size_t triangles) {
+    if (mesh.empty()) return mesh;
+    std::vector<glm::vec3> positions;
+    for (const city::Vertex& v : mesh.vertices) positions.push_back(v.position);
+    std::vector<std::uint32_t> same(positions.size());
+    const std::size_t count = meshopt_generateVertexRemap(
+        same.data(), nullptr, positions.size(), positions.data(), positions.size(), sizeof(glm::vec3));
+    city::Mesh shared;
+    shared.vertices.resize(count);
+    for (std::size_t i = 0; i < positions.size(); ++i) shared.vertices[same[i]] = mesh.vertices[i];
+    for (const auto i : mesh.indices) shared.indices.push_back(same[i]);
+    const city::Mesh coarse = simplified(shared, triangles);
+    std::vector<city::Vertex> corners;
+    for (std::size_t i = 0; i + 2 < coarse.indices.size(); i += 3) {
+        glm::vec3 middle{0};
+        for (int k = 0; k < 3; ++k) middle += coarse.vertices[coarse.indices[i + k]].position / 3.0f;
+        float best = std::numeric_limits<float>::max();
+        std::uint32_t material = 0;
+        for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+            const city::Vertex& a = mesh.vertices[mesh.indices[t]];
+            const float d = squaredDistance(middle, a.position, positions[mesh.indices[t + 1]],
+                                            positions[mesh.indices[t + 2]]);
+            if (d < best) {
+                best = d;
+                material = a.material;
+            }
+        }
+        for (int k = 0; k < 3; ++k) {
+            corners.push_back(coarse.vertices[coarse.indices[i + k]]);
+            corners.back().material = material;
+        }
+    }
+    return indexed(corners);
+}
+
+WheelShape shapeOf(const VehicleModel& model) {
+    WheelShape shape{
+        .radius = model.wheelRadius, .width = 0.2f, .rimRadius = 0.66f * model.wheelRadius, .tyre = false};
+    if (model.wheel.empty()) return shape;
+    shape.width = model.wheel.bounds().size().y;
+    for (const city::Vertex& v : model.wheel.vertices)
+        shape.tyre = shape.tyre || v.material == static_cast<std::uint32_t>(Surface::tyre);
+    return shape;
 }
 
 }  // namespace
@@ -168,25 +221,112 @@ city::Mesh withWheels(const city::Mesh& body, const VehicleModel& model, const c
     return out;
 }
 
-void makeLevels(VehicleModel& model, const city::Mesh& plainWheel, const LevelPlan& plan) {
-    optimise(model.wheel);
+city::Mesh withoutThinPieces(const city::Mesh& mesh, float thickness) {
+    const std::size_t faces = mesh.triangleCount();
+    std::vector<glm::vec3> positions;
+    for (const city::Vertex& v : mesh.vertices) positions.push_back(v.position);
+    std::vector<std::uint32_t> same(positions.size());
+    if (mesh.empty()) return mesh;
+    meshopt_generateVertexRemap(same.data(), nullptr, positions.size(), positions.data(), positions.size(),
+                                sizeof(glm::vec3));
+    struct Edge {
+        std::uint32_t a, b, face;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * faces);
+    for (std::uint32_t f = 0; f < faces; ++f)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const auto a = same[mesh.indices[3 * f + k]], b = same[mesh.indices[3 * f + (k + 1) % 3]];
+            edges.push_back({std::min(a, b), std::max(a, b), f});
+        }
+    std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+        return std::tie(x.a, x.b, x.face) < std::tie(y.a, y.b, y.face);
+    });
+    std::vector<glm::vec3> byGroup(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) byGroup[same[i]] = positions[i];
+    std::vector<std::uint32_t> surface(faces);
+    for (std::size_t f = 0; f < faces; ++f) surface[f] = mesh.vertices[mesh.indices[3 * f]].material;
+    // Connected pieces of one surface.
+    std::vector<std::uint32_t> root(faces);
+    std::iota(root.begin(), root.end(), 0u);
+    const auto find = [&](std::uint32_t i) {
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    const auto joins = [&](std::size_t i) {
+        return i > 0 && edges[i].a == edges[i - 1].a && edges[i].b == edges[i - 1].b;
+    };
+    for (std::size_t i = 1; i < edges.size(); ++i)
+        if (joins(i) && surface[edges[i].face] == surface[edges[i - 1].face])
+            root[find(edges[i].face)] = find(edges[i - 1].face);
+    std::vector<float> area(faces, 0), outline(faces, 0);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, float>
+        shared;  // piece and the neighbour's surface: border in metres
+    for (std::uint32_t f = 0; f < faces; ++f) {
+        const glm::vec3 a = positions[mesh.indices[3 * f]], b = positions[mesh.indices[3 * f + 1]],
+                        c = positions[mesh.indices[3 * f + 2]];
+        area[find(f)] += 0.5f * glm::length(glm::cross(b - a, c - a));
+    }
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+        if (!joins(i)) continue;
+        const auto f = edges[i].face, g = edges[i - 1].face;
+        if (surface[f] == surface[g]) continue;
+        const float length = glm::length(byGroup[edges[i].a] - byGroup[edges[i].b]);
+        for (const auto& [own, other] : {std::pair{f, g}, std::pair{g, f}}) {
+            outline[find(own)] += length;
+            shared[{find(own), surface[other]}] += length;
+        }
+    }
+    std::map<std::uint32_t, std::pair<float, std::uint32_t>> replacement;
+    for (const auto& [who, length] : shared) {
+        const auto [piece, other] = who;
+        if (2 * area[piece] >= thickness * outline[piece]) continue;
+        auto& best = replacement[piece];
+        if (length > best.first) best = {length, other};
+    }
+    std::vector<city::Vertex> corners;
+    corners.reserve(mesh.indices.size());
+    for (std::uint32_t f = 0; f < faces; ++f) {
+        const auto found = replacement.find(find(f));
+        for (int k = 0; k < 3; ++k) {
+            corners.push_back(mesh.vertices[mesh.indices[3 * f + k]]);
+            corners.back().material = found == replacement.end() ? surface[f] : found->second.second;
+        }
+    }
+    return indexed(corners);
+}
+
+void makeLevels(VehicleModel& model, const LevelPlan& plan) {
     model.levels.resize(1);
     optimise(model.levels[0].body);
+    optimise(model.wheel);
     const city::Mesh finest = model.levels[0].body;
-    const city::Mesh whole = withWheels(finest, model, model.wheel);
-    // Parts smaller than this share of the length are left out of the far levels.
-    const float small[3] = {0, 0.03f * model.length, 0.12f * model.length};
+    if (finest.empty()) return;
+    // Wheels as they are seen from outside: their inner sides would count as lost.
+    const city::Mesh whole = withWheels(
+        finest, model, model.wheel.empty() ? model.wheel : plainWheelMesh(shapeOf(model), 32, true));
+    struct Step {
+        float thin;    // metres: pieces of surface thinner than this are painted over
+        float small;   // metres: separate parts smaller than this are dropped
+        int segments;  // of a plain wheel
+        bool rim;
+    };
+    static constexpr Step steps[3] = {
+        {0.012f, 0.0f, 0, false}, {0.05f, 0.22f, 8, true}, {0.12f, 0.36f, 6, false}};
     float error = 0;
     for (int k = 0; k < 3; ++k) {
+        const Step& step = steps[k];
         const bool far = k > 0;
-        const std::size_t wheels = far ? plainWheel.triangleCount() * model.wheels.size() : 0;
+        city::Mesh wheel;
+        if (far && !model.wheel.empty()) wheel = plainWheelMesh(shapeOf(model), step.segments, step.rim);
+        const std::size_t wheels = wheel.triangleCount() * model.wheels.size();
         const std::size_t target =
-            std::max<std::size_t>(plan.triangles[k] > wheels ? plan.triangles[k] - wheels : 0, 60);
+            std::max<std::size_t>(plan.triangles[k] > wheels ? plan.triangles[k] - wheels : 0, 100);
         if (finest.triangleCount() <= target) continue;
-        city::Mesh body = withoutSmallPieces(finest, small[k], !far);
-        city::Mesh coarse = simplified(body, target, false);
-        if (coarse.triangleCount() > target + target / 3) coarse = simplified(body, target, true);
-        if (far) coarse = withWheels(coarse, model, plainWheel);
+        city::Mesh body = withoutThinPieces(withoutSmallPieces(finest, step.small, k < 2), step.thin);
+        city::Mesh coarse = simplified(body, target);
+        if (coarse.triangleCount() > target + target / 5) coarse = simplifiedAcross(body, target);
+        if (far) coarse = withWheels(coarse, model, wheel);
         optimise(coarse);
         if (coarse.empty() || coarse.triangleCount() >= model.levels.back().body.triangleCount()) continue;
         // A farther level is never said to be nearer the truth than a finer one.

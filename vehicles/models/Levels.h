@@ -9,12 +9,18 @@ struct LevelPlan {
     std::size_t triangles[3] = {2500, 700, 180};
 };
 
-/// Fills model.levels[1..] from levels[0] by meshoptimizer's quadric simplification; surfaces' borders are
-/// kept as long as the target can be met with them, and small parts are dropped first. `plainWheel` (about 60
-/// triangles, or empty) is what the last two levels carry in the wheels' places. Errors are measured: see
-/// `distanceBetween`. All levels, and the wheel, come out ordered for the vertex cache. Cost: some tens of
-/// milliseconds.
-void makeLevels(VehicleModel& model, const city::Mesh& plainWheel, const LevelPlan& plan = {});
+/// Fills model.levels[1..] from levels[0]: thin pieces of surface (gaps, seals) take their neighbours'
+/// surface, small separate parts are dropped, and the rest goes through meshoptimizer's quadric
+/// simplification, which keeps the borders of surfaces. The last two levels carry plain wheels. Errors are
+/// measured (`distanceBetween`) and never fall from level to level; a level that would not be smaller than
+/// the one before is left out. All levels, and the wheel, come out ordered for the vertex cache. An empty
+/// body is left as it is. Cost: some tens of milliseconds.
+void makeLevels(VehicleModel& model, const LevelPlan& plan = {});
+
+/// The mesh with every connected piece of one surface that is thinner than `thickness` metres (twice its area
+/// over its outline) painted like the neighbour with which it shares the longest border, vertices shared
+/// anew.
+city::Mesh withoutThinPieces(const city::Mesh& mesh, float thickness);
 
 /// The largest distance in metres from points spread over `reference` (vertices and middles of triangles,
 /// about `samples`; surface `interior` is left out, since it is not seen) to the nearest point of `mesh`: a

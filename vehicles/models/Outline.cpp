@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
@@ -37,9 +38,16 @@ void Outline::build(const std::vector<Corner>& corners) {
             points_.push_back((1 - t) * (1 - t) * a + 2 * t * (1 - t) * c + t * t * b);
         }
     }
+    low_ = high_ = points_.front();
+    for (const glm::vec2& p : points_) {
+        low_ = glm::min(low_, p);
+        high_ = glm::max(high_, p);
+    }
 }
 
 float Outline::distance(const glm::vec2& p) const {
+    const glm::vec2 off = glm::max(glm::max(low_ - p, p - high_), glm::vec2(0));
+    if (const float away = std::max(off.x, off.y); away > 0.3f) return away;
     float nearest = std::numeric_limits<float>::max();
     bool inside = false;
     for (std::size_t i = 0, j = points_.size() - 1; i < points_.size(); j = i++) {
@@ -56,34 +64,42 @@ float Outline::distance(const glm::vec2& p) const {
     return inside ? -d : d;
 }
 
+namespace {
+/// The larger of a guard plane's distance and the outline's, which need not be known where the guard is far
+/// away.
+float guarded(float guard, const Outline& outline, const glm::vec2& p) {
+    return guard > 0.3f ? guard : std::max(guard, outline.distance(p));
+}
+}  // namespace
+
 Field inSideView(Outline outline, float inner, float above) {
     return [o = std::move(outline), inner, above](const glm::vec3& p, const glm::vec3&) {
-        return std::max({o.distance({p.x, p.z}), inner - std::abs(p.y), above - p.z});
+        return guarded(std::max(inner - std::abs(p.y), above - p.z), o, {p.x, p.z});
     };
 }
 Field inFrontView(Outline outline, float behind) {
     return [o = std::move(outline), behind](const glm::vec3& p, const glm::vec3&) {
-        return std::max(o.distance({std::abs(p.y), p.z}), behind - p.x);
+        return guarded(behind - p.x, o, {std::abs(p.y), p.z});
     };
 }
 Field inRearView(Outline outline, float before) {
     return [o = std::move(outline), before](const glm::vec3& p, const glm::vec3&) {
-        return std::max(o.distance({std::abs(p.y), p.z}), p.x - before);
+        return guarded(p.x - before, o, {std::abs(p.y), p.z});
     };
 }
 Field roundTheFront(Outline outline, float face) {
     return [o = std::move(outline), face](const glm::vec3& p, const glm::vec3&) {
-        return std::max(o.distance({std::abs(p.y) + std::abs(p.x - face), p.z}), -p.x);
+        return guarded(-p.x, o, {std::abs(p.y) + std::abs(p.x - face), p.z});
     };
 }
 Field roundTheRear(Outline outline, float face) {
     return [o = std::move(outline), face](const glm::vec3& p, const glm::vec3&) {
-        return std::max(o.distance({std::abs(p.y) + std::abs(p.x - face), p.z}), p.x);
+        return guarded(p.x, o, {std::abs(p.y) + std::abs(p.x - face), p.z});
     };
 }
 Field inTopView(Outline outline, float above) {
     return [o = std::move(outline), above](const glm::vec3& p, const glm::vec3&) {
-        return std::max(o.distance({p.x, std::abs(p.y)}), above - p.z);
+        return guarded(above - p.z, o, {p.x, std::abs(p.y)});
     };
 }
 Field below(float z, float slope) {

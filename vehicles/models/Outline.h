@@ -26,6 +26,7 @@ class Outline {
   private:
     void build(const std::vector<Corner>& corners);
     std::vector<glm::vec2> points_;
+    glm::vec2 low_{0}, high_{0};
 };
 
 /// An outline in side view (x, z), on the flanks where |y| > inner and z > above.

@@ -162,7 +162,7 @@ void drawLines(Shell& half) {
     // Windows.
     addGlass(
         half,
-        inFrontView(Outline({{-.3f, 1.005f}, {.635f, 1.005f}, {.545f, 1.345f}, {-.3f, 1.365f}}, .06f), .0f));
+        inFrontView(Outline({{-.3f, 1.005f}, {.635f, 1.005f}, {.545f, 1.345f}, {-.3f, 1.365f}}, .06f), -.2f));
     const Field daylight = inSideView(Outline({{{.62f, .952f}, .03f},
                                                {{-.08f, 1.298f}, .10f},
                                                {{-.55f, 1.336f}, .25f},

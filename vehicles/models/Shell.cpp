@@ -54,17 +54,27 @@ float rootBetween(const Shell& shell, const Field& field, std::uint32_t a, std::
 }  // namespace
 
 void Shell::refine(const Field& field, float longest) {
+    // Cutting straight across an edge misses the line by about this much at most.
+    constexpr float tolerance = 0.0015f;
+    std::vector<float> value;
     for (int round = 0; round < 6; ++round) {
         std::unordered_map<std::uint64_t, std::uint32_t> middle;
-        std::vector<float> value(positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i) value[i] = field(positions[i], normals[i]);
+        for (std::size_t i = value.size(); i < positions.size(); ++i)
+            value.push_back(field(positions[i], normals[i]));
+        std::vector<bool> touched(positions.size(), false);
         const auto split = [&](std::uint32_t a, std::uint32_t b) {
-            const float length = glm::length(positions[a] - positions[b]);
+            const glm::vec3 along = positions[b] - positions[a];
+            const float length = glm::length(along);
             if (length <= longest) return;
             // A distance field changes by no more than the way gone: farther ends than that cannot meet the
             // line.
             if (std::min(std::abs(value[a]), std::abs(value[b])) > 0.75f * length) return;
-            if (!middle.contains(edgeKey(a, b))) middle[edgeKey(a, b)] = addBetween(*this, a, b, 0.5f);
+            const glm::vec3 p = positions[a] + 0.5f * along;
+            const float bend = field(p, 0.5f * (normals[a] + normals[b])) - 0.5f * (value[a] + value[b]);
+            if (std::abs(bend) < tolerance || (touched[a] && touched[b] && middle.contains(edgeKey(a, b))))
+                return;
+            middle[edgeKey(a, b)] = addBetween(*this, a, b, 0.5f);
+            touched[a] = touched[b] = true;
         };
         for (const Triangle& t : triangles)
             for (int k = 0; k < 3; ++k) split(t.corner[k], t.corner[(k + 1) % 3]);
@@ -76,8 +86,11 @@ void Shell::refine(const Field& field, float longest) {
             std::uint32_t m[3];
             int count = 0;
             for (int k = 0; k < 3; ++k) {
-                const auto found = middle.find(edgeKey(t.corner[k], t.corner[(k + 1) % 3]));
-                m[k] = found == middle.end() ? none : found->second;
+                const auto a = t.corner[k], b = t.corner[(k + 1) % 3];
+                m[k] = none;
+                if (!touched[a] || !touched[b]) continue;
+                if (const auto found = middle.find(edgeKey(a, b)); found != middle.end())
+                    m[k] = found->second;
                 count += m[k] != none;
             }
             const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

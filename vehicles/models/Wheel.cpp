@@ -109,15 +109,12 @@ city::Mesh wheelMesh(const WheelShape& shape) {
     return mesh;
 }
 
-city::Mesh plainWheelMesh(const WheelShape& shape, int segments) {
+city::Mesh plainWheelMesh(const WheelShape& shape, int segments, bool rim) {
     city::Mesh mesh;
-    const float r = shape.radius, w = shape.width / 2, rim = shape.rimRadius;
-    if (shape.tyre) {
-        addRevolved(mesh, {{w, 0}, {w, rim}}, segments, Surface::rim);
-        addRevolved(mesh, {{w, rim}, {w, r}, {-w, r}, {-w, 0}}, segments, Surface::tyre);
-    } else {
-        addRevolved(mesh, {{w, 0}, {w, r}, {-w, r}, {-w, 0}}, segments, Surface::rim);
-    }
+    const float r = shape.radius, w = shape.width / 2, inner = rim ? shape.rimRadius : 0;
+    const Surface outer = shape.tyre ? Surface::tyre : Surface::rim;
+    if (rim) addRevolved(mesh, {{w, 0}, {w, inner}}, segments, Surface::rim);
+    addRevolved(mesh, {{w, inner}, {w, r}, {-w, r}}, segments, outer);
     return mesh;
 }
 

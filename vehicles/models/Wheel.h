@@ -15,7 +15,7 @@ struct WheelShape {
 /// A left-hand wheel as VehicleModel::wheel asks: axle along y, outside towards +y, about 1,500 triangles.
 city::Mesh wheelMesh(const WheelShape& shape);
 
-/// The same outline in about 60 triangles, for far levels.
-city::Mesh plainWheelMesh(const WheelShape& shape, int segments);
+/// The same outline for far levels, without its inner side: 5 triangles a segment with the rim, 3 without.
+city::Mesh plainWheelMesh(const WheelShape& shape, int segments, bool rim);
 
 }  // namespace vehicles
