@@ -79,13 +79,9 @@ std::vector<TourStop> boulevardTour(const BoulevardPlan& plan) {
     // Between the trams (their sides at 3.35 m from the axis) and the cars (theirs at 4.65 m).
     constexpr float y = 3.95f;
     std::vector<float> crossings;
-    glm::vec2 square(0);
+    const glm::vec2 square = plan.square;
     for (const BoulevardPlan::Street& street : plan.streets) {
         if (street.rank == StreetRank::avenue) crossings.push_back(street.from.x);
-    }
-    for (const BoulevardPlan::Block& block : plan.blocks) {
-        if (block.use != BlockUse::square) continue;
-        for (const glm::vec2& p : block.boundary) square += 0.25f * p;
     }
     std::vector<TourKey> keys;
     const float stop = square.x - 30;

@@ -153,7 +153,10 @@ BoulevardPlan planBoulevard(double size, Random& random) {
             block.boundary = insetRing(
                 {grid.at(i, j), grid.at(i + 1, j), grid.at(i + 1, j + 1), grid.at(i, j + 1)}, distances);
             if (block.boundary.empty()) continue;
-            if (i == grid.columns / 2 && j == 0) block.use = BlockUse::square;
+            if (i == grid.columns / 2 && j == 0) {
+                block.use = BlockUse::square;
+                for (const glm::vec2& p : block.boundary) plan.square += 0.25f * p;
+            }
             if (grid.rows > 1 && i == parkColumn && j == parkRow) block.use = BlockUse::park;
             plan.blocks.push_back(std::move(block));
         }

@@ -36,8 +36,9 @@ struct BoulevardPlan {
     StreetGraph graph;
     std::vector<Street> streets;  ///< one per edge of the graph
     std::vector<Block> blocks;
-    float ring = 0;  ///< metres; the ring's axes are x = +-ring and y = +-ring
-    float half = 0;  ///< metres; the city's border
+    glm::vec2 square{0};  ///< middle of the square
+    float ring = 0;       ///< metres; the ring's axes are x = +-ring and y = +-ring
+    float half = 0;       ///< metres; the city's border
 };
 
 /// Half the carriageway, axis to kerb, and axis to houses.

@@ -139,8 +139,10 @@ Tree growTree(const TreeShape& shape, std::size_t leafCount, Random& random) {
     return tree;
 }
 
-/// A leaf folded along its rib: two triangles that share the rib.
-void addLeaf(Mesh& mesh, const Tree& tree, const Leaf& leaf, float length, bool half) {
+enum class LeafCut : std::uint8_t { folded, single };
+
+/// A leaf folded along its rib, two triangles that share the rib; or one triangle of the same area.
+void addLeaf(Mesh& mesh, const Tree& tree, const Leaf& leaf, float length, LeafCut cut) {
     const glm::vec3 inwards = tree.crownCentre - leaf.centre;
     // Enlarged leaves move inwards, so that the crown does not grow with them.
     const float pull = std::min(0.4f, 0.35f * length / tree.crownRadii.x);
@@ -148,21 +150,60 @@ void addLeaf(Mesh& mesh, const Tree& tree, const Leaf& leaf, float length, bool 
     const glm::vec3 across = glm::cross(leaf.normal, leaf.along);
     const float width = 0.62f * length;
     const glm::vec3 stalk = centre - 0.5f * length * leaf.along, tip = centre + 0.5f * length * leaf.along;
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    if (cut == LeafCut::single) {
+        const glm::vec3 foot = centre - 0.4f * length * leaf.along;
+        mesh.vertices.push_back({foot + 0.5f * width * across, leaf.shading, {0.1f, 0.2f}, leaf.material});
+        mesh.vertices.push_back({foot - 0.5f * width * across, leaf.shading, {0.9f, 0.2f}, leaf.material});
+        mesh.vertices.push_back({tip + 0.1f * length * leaf.along, leaf.shading, {0.5f, 1}, leaf.material});
+        mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2});
+        return;
+    }
     const glm::vec3 fold = 0.12f * length * leaf.normal - 0.08f * length * leaf.along;
     const glm::vec3 left = centre + 0.5f * width * across + fold,
                     right = centre - 0.5f * width * across + fold;
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.push_back({stalk, leaf.shading, {0.5f, 0}, leaf.material});
     mesh.vertices.push_back({right, leaf.shading, {1, 0.5f}, leaf.material});
     mesh.vertices.push_back({tip, leaf.shading, {0.5f, 1}, leaf.material});
-    mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2});
-    if (half) return;
     mesh.vertices.push_back({left, leaf.shading, {0, 0.5f}, leaf.material});
-    mesh.indices.insert(mesh.indices.end(), {base, base + 2, base + 3});
+    mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2, base, base + 2, base + 3});
 }
 
-/// Area of a leaf of length 1: two triangles over a rib of 1, each about half the width high.
+/// The shaded inside of the crown (to `share` of its radii), which fine trees fill with leaves and coarse
+/// ones cannot afford to: a lumpy ball, darker than the leaves in front of it.
+void addCore(Mesh& mesh, const Tree& tree, float share, int around, int rings, std::uint32_t material) {
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int j = 0; j <= rings; ++j) {
+        const Turn polar(0.5 * j / rings - 0.25);
+        for (int i = 0; i < around; ++i) {
+            const Turn turn(static_cast<double>(i) / around + 0.5 * (j % 2) / around);
+            const glm::vec3 d(polar.cos * turn.cos, polar.cos * turn.sin, polar.sin);
+            // Lumps that depend on the direction alone, so that all levels share them.
+            const float lump = 1 + 0.17f * Turn(static_cast<double>(1.3f * d.x + 0.9f * d.z)).sin +
+                               0.14f * Turn(static_cast<double>(1.1f * d.y - 0.7f * d.x)).cos;
+            mesh.vertices.push_back(
+                {tree.crownCentre + share * lump * tree.crownRadii * d, d, {d.x, d.z}, material});
+        }
+    }
+    const auto at = [&](int i, int j) { return base + static_cast<std::uint32_t>(j * around + i % around); };
+    for (int j = 0; j < rings; ++j) {
+        for (int i = 0; i < around; ++i) {
+            // Odd rings are turned by half a step.
+            const int shift = j % 2;
+            if (j > 0)
+                mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i + shift, j + 1)});
+            if (j + 1 < rings)
+                mesh.indices.insert(mesh.indices.end(),
+                                    {at(i + 1 - shift, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+}
+
+/// Area of a leaf of length 1, of either cut: half its width.
 constexpr float leafArea = 0.31f;
+
+/// A leaf that is drawn larger than its real neighbours moves the crown's outline by a part of its length.
+constexpr float errorOfLength = 0.6f;
 
 }  // namespace
 
@@ -172,7 +213,12 @@ Prototype makeBroadleafTree(std::string name, const TreeShape& shape, std::span<
     prototype.name = std::move(name);
     if (triangles.empty()) return prototype;
     Random random(seed);
-    const Tree tree = growTree(shape, triangles.front() / 2, random);
+    // As many leaves as any level can show.
+    std::size_t leafCount = 0;
+    for (const std::size_t n : triangles) {
+        leafCount = std::max(leafCount, n);
+    }
+    const Tree tree = growTree(shape, leafCount, random);
     const float leafTotal = shape.leafCoverage * 3.1416f * shape.crownRadius * shape.crownRadius;
 
     for (const std::size_t wanted : triangles) {
@@ -198,14 +244,24 @@ Prototype makeBroadleafTree(std::string name, const TreeShape& shape, std::span<
             addTube(level.mesh, limb.from, limb.to, limb.radius0, limb.radius1, sides[limb.order],
                     shape.bark);
         }
+        if (!fine) {
+            const int around = wanted >= 500 ? 12 : wanted >= 150 ? 8 : 6;
+            const int rings = wanted >= 500 ? 6 : wanted >= 150 ? 4 : 3;
+            // The more leaves, the less of it shows.
+            const float share = prototype.levels.empty() ? 0.52f : wanted >= 500 ? 0.6f : 0.66f;
+            addCore(level.mesh, tree, share, around, rings, shape.core);
+        }
         const std::size_t wood = level.mesh.triangleCount();
         const std::size_t rest = wanted > wood ? wanted - wood : 0;
-        const std::size_t leaves = std::min(tree.leaves.size(), (rest + 1) / 2);
+        const LeafCut cut = prototype.levels.empty() ? LeafCut::folded : LeafCut::single;
+        const std::size_t leaves = cut == LeafCut::folded ? (rest + 1) / 2 : rest;
         const float length =
             std::sqrt(leafTotal / (leafArea * static_cast<float>(std::max<std::size_t>(leaves, 1))));
-        for (std::size_t i = 0; i < leaves; ++i)
-            addLeaf(level.mesh, tree, tree.leaves[i], length, i + 1 == leaves && rest % 2 == 1);
-        level.error = prototype.levels.empty() ? 0 : length;
+        for (std::size_t i = 0; i < leaves; ++i) {
+            const bool odd = cut == LeafCut::folded && i + 1 == leaves && rest % 2 == 1;
+            addLeaf(level.mesh, tree, tree.leaves[i], length, odd ? LeafCut::single : cut);
+        }
+        level.error = prototype.levels.empty() ? 0 : errorOfLength * length;
         prototype.levels.push_back(std::move(level));
     }
     return prototype;

@@ -18,11 +18,12 @@ TreeShape leafy(const Palette& palette, float height, float crownBase, float cro
     shape.crownRadius = crownRadius;
     shape.trunkRadius = trunkRadius;
     shape.bark = palette.bark;
+    shape.core = palette.foliageShade;
     shape.foliage[0] = dark ? palette.foliageDark : palette.foliageBright;
     shape.foliage[1] = palette.foliageDark;
     shape.foliage[2] = dark ? palette.foliageBright : palette.foliageWarm;
     shape.clusters = 130;
-    shape.leafCoverage = 3.2f;
+    shape.leafCoverage = 3.6f;
     return shape;
 }
 
@@ -34,8 +35,8 @@ Standing addPrototypes(const Palette& palette, Random& random, CityModel& model)
         model.prototypes.push_back(std::move(prototype));
         return static_cast<std::uint32_t>(model.prototypes.size() - 1);
     };
-    constexpr std::array<std::size_t, 4> levels{3600, 1000, 280, 60};
-    constexpr std::array<std::size_t, 4> smallLevels{1800, 600, 200, 48};
+    constexpr std::array<std::size_t, 4> levels{4400, 1500, 500, 120};
+    constexpr std::array<std::size_t, 4> smallLevels{1800, 700, 240, 72};
     for (int k = 0; k < 2; ++k) {
         standing.avenueTrees.push_back(add(makeBroadleafTree(
             "lime tree", leafy(palette, 10.8f, 2.9f, 2.9f, 0.2f, false), levels, random.next())));

@@ -199,7 +199,7 @@ void addEdgeRows(const BoulevardPlan& plan, const Palette& palette, const Standi
                                                     a - deep * out};
                 addDeck(chunks.at(ChunkKind::ground, lot.centre().x, lot.centre().y), yard, innerGround,
                         palette.grass, palette.repeat(palette.grass));
-                if (deep > houseDepth + 12)
+                if (deep > houseDepth + 12 && k % 3 == 0)
                     placeTree(model, standing.parkTrees,
                               {0.5f * (a + b) - (houseDepth + 7) * out, innerGround}, random);
             }

@@ -33,7 +33,7 @@ Prototype makeStreetLamp(const Palette& p) {
     addTube(m, {0, 0, 0.9f}, {0, 0, 7.2f}, 0.075f, 0.045f, 8, p.metalDark);
     addTube(m, {0, 0, 7.2f}, {0.6f, 0, 7.75f}, 0.045f, 0.04f, 6, p.metalDark);
     addTube(m, {0.6f, 0, 7.75f}, {1.5f, 0, 7.85f}, 0.04f, 0.035f, 6, p.metalDark);
-    box(m, {1.3f, -0.16f, 7.78f}, {2.1f, 0.16f, 7.92f}, p.metalDark, boxAll & ~boxBottom);
+    box(m, {1.3f, -0.16f, 7.78f}, {2.1f, 0.16f, 7.92f}, p.metalDark);
     box(m, {1.32f, -0.14f, 7.74f}, {2.08f, 0.14f, 7.78f}, p.lampGlass, boxAll & ~boxTop);
     Prototype lamp = single("street lamp", std::move(m));
     Mesh far;
@@ -83,7 +83,7 @@ Prototype makeBollard(const Palette& p) {
     Mesh m;
     const std::array<glm::vec2, 5> profile{
         {{0.085f, 0}, {0.075f, 0.7f}, {0.1f, 0.74f}, {0.09f, 0.86f}, {0, 0.93f}}};
-    addLathe(m, {0, 0, 0}, profile, 8, p.metalDark);
+    addLathe(m, {0, 0, 0}, profile, 6, p.metalDark);
     return single("bollard", std::move(m));
 }
 

@@ -30,7 +30,7 @@ void addBalcony(const Front& front, float s, float z, float halfWidth, std::uint
                 Mesh& mesh) {
     constexpr float depth = 0.95f, height = 1.0f, thin = 0.05f;
     front.box(mesh, {s - halfWidth, s + halfWidth, 0, depth, z - 0.18f, z}, slab, boxAll & ~boxBack);
-    const unsigned sheet = boxFront | boxBack | boxTop;
+    const unsigned sheet = boxAll & ~boxBottom;
     front.box(mesh, {s - halfWidth, s + halfWidth, depth - thin, depth - 0.01f, z, z + height}, rail, sheet);
     const unsigned side = boxLeft | boxRight | boxTop;
     front.box(mesh, {s - halfWidth + 0.01f, s - halfWidth + thin, 0, depth - thin, z, z + height}, rail,

@@ -144,14 +144,41 @@ void addPark(const Ring& ring, const Palette& palette, const Standing& standing,
     }
 }
 
+void addCourtHouse(const Ring& ring, const Palette& palette, Random& random, ChunkCollector& chunks) {
+    constexpr float shortest = 14, halfDepth = 5.5f, gap = 6;  // metres
+    const glm::vec2 c = centreOf(ring);
+    const glm::vec2 along = glm::normalize(ring[1] - ring[0]), out = outward(ring[0], ring[1]);
+    const float half = 0.5f * glm::length(ring[1] - ring[0]) - gap;
+    const glm::vec2 middle = c - random.range(-6, 6) * out;
+    const Ring walls{middle - half * along + halfDepth * out, middle + half * along + halfDepth * out,
+                     middle + half * along - halfDepth * out, middle - half * along - halfDepth * out};
+    if (2 * half < shortest ||
+        !std::all_of(walls.begin(), walls.end(), [&](glm::vec2 p) { return inside(ring, p, gap - 0.5f); }))
+        return;
+    BlockSide side;
+    side.storeysLow = 2;
+    side.storeysHigh = 4;
+    HouseDesign design = drawHouse(side, 0, palette, random);
+    design.cornice = false;
+    if (design.roof == HouseRoof::mansard) design.roof = HouseRoof::gabled;
+    Lot lot;
+    for (const glm::vec2& p : walls) lot.corners.push_back({p, Side::court, 0});
+    HouseMeshes meshes;
+    appendHouse(lot, design, palette, 0, random, meshes);
+    chunks.add(ChunkKind::building, meshes.solid);
+}
+
 void addCourt(const Ring& ring, const Palette& palette, const Standing& standing, Random& random,
               CityModel& model, ChunkCollector& chunks) {
     addLayer(ring, innerGround + lift, random.chance(0.6) ? palette.grass : palette.cobbles, palette, chunks);
     const glm::vec2 c = centreOf(ring);
     std::vector<glm::vec2> trees;
-    for (int attempt = 0; attempt < 30 && trees.size() < 3; ++attempt) {
+    const bool house = random.chance(0.65);
+    if (house) addCourtHouse(ring, palette, random, chunks);
+    for (int attempt = 0; attempt < 30 && trees.size() < 2; ++attempt) {
         const glm::vec2 p = c + glm::vec2(random.range(-30, 30), random.range(-30, 30));
         if (!inside(ring, p, 4.2f)) continue;
+        if (house && std::abs(glm::dot(p - c, outward(ring[0], ring[1]))) < 17) continue;
         if (!std::all_of(trees.begin(), trees.end(), [&](glm::vec2 q) { return glm::length(p - q) > 8; }))
             continue;
         trees.push_back(p);

@@ -28,10 +28,10 @@ Palette makePalette() {
     p.streets.pavement = add(Pattern::pavement, {0.3f, 0.29f, 0.27f}, 2);
     p.streets.kerb = add(Pattern::plain, {0.42f, 0.41f, 0.39f}, 1);
     p.streets.marking = add(Pattern::marking, {0.72f, 0.72f, 0.7f}, 1);
-    p.streets.tramBed = add(Pattern::grass, {0.15f, 0.2f, 0.07f}, 4);
+    p.streets.tramBed = add(Pattern::grass, {0.14f, 0.18f, 0.07f}, 2.5f);
     p.streets.rail = add(Pattern::rail, {0.4f, 0.39f, 0.38f}, 1);
 
-    p.grass = add(Pattern::grass, {0.13f, 0.19f, 0.06f}, 4);
+    p.grass = add(Pattern::grass, {0.13f, 0.18f, 0.06f}, 2.5f);
     p.meadow = add(Pattern::grass, {0.17f, 0.2f, 0.08f}, 16);
     p.hills = add(Pattern::plain, {0.13f, 0.17f, 0.13f}, 50);
     p.soil = add(Pattern::soil, {0.14f, 0.1f, 0.07f}, 2);
@@ -42,6 +42,7 @@ Palette makePalette() {
     p.bark = add(Pattern::bark, {0.16f, 0.125f, 0.095f}, 1);
     p.foliageBright = add(Pattern::foliage, {0.105f, 0.165f, 0.04f}, 1, true);
     p.foliageDark = add(Pattern::foliage, {0.07f, 0.125f, 0.035f}, 1, true);
+    p.foliageShade = add(Pattern::foliage, {0.04f, 0.075f, 0.02f}, 1);
     p.foliageWarm = add(Pattern::foliage, {0.15f, 0.17f, 0.045f}, 1, true);
     p.metalDark = add(Pattern::metal, {0.05f, 0.055f, 0.06f}, 1);
     p.metalLight = add(Pattern::metal, {0.42f, 0.43f, 0.44f}, 1);
@@ -50,6 +51,7 @@ Palette makePalette() {
     p.bronze = add(Pattern::metal, {0.11f, 0.14f, 0.11f}, 1);
     p.copper = add(Pattern::metal, {0.25f, 0.42f, 0.35f}, 2);
     p.lampGlass = add(Pattern::plain, {0.75f, 0.72f, 0.65f}, 1);
+    p.materials[p.lampGlass].emission = {9, 7.2f, 4.6f};  // shown when the lamps are lit
     p.roofFlat = add(Pattern::roofFlat, {0.3f, 0.295f, 0.285f}, 4);
     p.zinc = add(Pattern::metal, {0.25f, 0.27f, 0.3f}, 2);
     p.shelterGlass = add(Pattern::plain, {0.32f, 0.4f, 0.42f}, 1, true);

@@ -25,7 +25,7 @@ struct Palette {
 
     StreetMaterials streets;
     std::uint32_t grass = 0, meadow = 0, soil = 0, water = 0, cobbles = 0, slabs = 0, gravel = 0, hills = 0;
-    std::uint32_t bark = 0, foliageBright = 0, foliageDark = 0, foliageWarm = 0;
+    std::uint32_t bark = 0, foliageBright = 0, foliageDark = 0, foliageWarm = 0, foliageShade = 0;
     std::uint32_t metalDark = 0, metalLight = 0, wood = 0, granite = 0, bronze = 0, copper = 0, lampGlass = 0;
     std::uint32_t roofFlat = 0, zinc = 0;
     std::uint32_t shelterGlass = 0;

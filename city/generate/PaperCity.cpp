@@ -31,6 +31,9 @@ constexpr std::size_t otherTriangles = allTriangles - buildingTriangles - treeCo
 
 constexpr std::size_t chimneyTriangles = 10;
 
+/// The houses of the middle block stand this far behind the pavement, in metres, behind the trees.
+constexpr float gardenDepth = 17;
+
 /// All houses of the city in one order, with the block each belongs to.
 struct Houses {
     std::vector<PlannedHouse> planned;
@@ -42,7 +45,7 @@ Houses planHouses(const Palette& palette, const Random& seed) {
     Houses houses;
     for (int j = -1; j < L::lines; ++j) {
         for (int i = -1; i < L::lines; ++i) {
-            if (i == 1 && j == 1) continue;  // the square
+            const bool square = i == 1 && j == 1;
             Random random = seed.fork(static_cast<std::uint64_t>((j + 1) * 8 + i + 1));
             const auto low = [](int k) { return k < 0 ? -L::half + 2 : L::line(k) + L::houseLine; };
             const auto high = [](int k) {
@@ -51,6 +54,7 @@ Houses planHouses(const Palette& palette, const Random& seed) {
             const bool inner = i >= 0 && j >= 0 && i + 1 < L::lines && j + 1 < L::lines;
             BlockPlan plan;
             plan.boundary = {{low(i), low(j)}, {high(i), low(j)}, {high(i), high(j)}, {low(i), high(j)}};
+            if (square) plan.boundary = insetRing(plan.boundary, gardenDepth);
             plan.depth = inner ? 15 : 13;
             plan.frontLow = inner ? 17.0f : 22.0f;
             plan.frontHigh = inner ? 30.0f : 36.0f;
@@ -70,25 +74,6 @@ Houses planHouses(const Palette& palette, const Random& seed) {
         }
     }
     return houses;
-}
-
-/// A civic building of four wings' height in the middle of the square.
-PlannedHouse civicBuilding(const Palette& palette) {
-    PlannedHouse house;
-    constexpr float half = 34;
-    house.lot.corners = {{{-half, -half}, Side::street, 0},
-                         {{half, -half}, Side::street, 0},
-                         {{half, half}, Side::street, 0},
-                         {{-half, half}, Side::street, 0}};
-    house.design.style = palette.facades[palette.firstGlassFacade - 3];
-    house.design.storeys = 4;
-    house.design.storeyHeight = 4.4f;
-    house.design.groundFloorHeight = 5.5f;
-    house.design.bayWidth = 4;
-    house.design.roof = HouseRoof::tent;
-    house.design.roofMaterial = palette.copper;
-    house.design.roofHeight = 9;
-    return house;
 }
 
 /// Takes off ornament, dearest first; false when none is left.
@@ -114,9 +99,7 @@ std::size_t triangles(const HouseMeshes& meshes) {
 /// Builds every house as richly as its share of the triangles allows, then spends what is left on chimneys
 /// and roof lights, so that the sum is exact.
 void addHouses(Houses houses, const Palette& palette, const Random& seed, ChunkCollector& chunks) {
-    std::vector<HouseMeshes> blocks(houses.blocks + 1);
-    houses.planned.push_back(civicBuilding(palette));
-    houses.block.push_back(houses.blocks);
+    std::vector<HouseMeshes> blocks(houses.blocks);
     const std::size_t count = houses.planned.size();
     const std::size_t reserve = 2 * count;  // for chimneys: one house in five
     std::size_t used = 0;
@@ -140,21 +123,24 @@ void addHouses(Houses houses, const Palette& palette, const Random& seed, ChunkC
     }
     // Chimneys on houses in turn, at different places along the ridge; the odd rest as roof lights.
     for (std::size_t k = 0; used + chimneyTriangles <= buildingTriangles; ++k) {
-        const PlannedHouse& house = houses.planned[(k * 7) % (count - 1)];
+        const PlannedHouse& house = houses.planned[(k * 7) % count];
         const glm::vec2 a = house.lot.corners[0].position, b = house.lot.corners[1].position;
         const glm::vec2 along = -glm::vec2(outward(a, b).y, -outward(a, b).x);
-        const float shift = (0.3f - 0.15f * static_cast<float>(k / (count - 1))) * house.lot.length(0);
+        const float shift = (0.3f - 0.15f * static_cast<float>(k / count)) * house.lot.length(0);
         const float eaves = house.design.eaves();
-        const float rise = house.design.roof == HouseRoof::flat ? 0 : house.design.roofHeight;
+        const bool tent = house.design.roof == HouseRoof::tent;
+        const float rise =
+            house.design.roof == HouseRoof::flat ? 0 : (tent ? 0.5f : 1.0f) * house.design.roofHeight;
         appendChimney(house.lot.centre() + shift * along, along, eaves, eaves + rise + 1.2f,
-                      palette.roofTiles[1], blocks[houses.block[(k * 7) % (count - 1)]].solid);
+                      palette.roofTiles[1], blocks[houses.block[(k * 7) % count]].solid);
         used += chimneyTriangles;
     }
-    for (int k = 0; used < buildingTriangles; ++k, used += 2) {
-        const HouseDesign& civic = houses.planned.back().design;
-        const float z = civic.eaves() + civic.roofHeight + 0.05f, s = 0.4f + 0.1f * static_cast<float>(k);
-        const std::array<glm::vec2, 4> light{{{-s, -s}, {s, -s}, {s, s}, {-s, s}}};
-        addDeck(blocks.back().solid, light, z + 0.02f * static_cast<float>(k), palette.zinc);
+    // The odd rest: house numbers beside the doors.
+    for (std::size_t k = 0; used < buildingTriangles; ++k, used += 2) {
+        const Lot& lot = houses.planned[k].lot;
+        const glm::vec2 a = lot.corners[0].position, b = lot.corners[1].position;
+        const glm::vec2 out = outward(a, b), along(-out.y, out.x), p = a + 1.2f * along + 0.14f * out;
+        addWall(blocks[houses.block[k]].details, p, p + 0.4f * along, 2.2f, 2.5f, palette.signs[1], 1, 1);
     }
     for (HouseMeshes& block : blocks) {
         ChunkCollector pieces(125);
@@ -183,12 +169,13 @@ void addTrees(CityModel& model, const Palette& palette, Random& random) {
     shape.clusters = 420;
     shape.leafCoverage = 4.2f;
     shape.bark = palette.bark;
+    shape.core = palette.foliageShade;
     shape.foliage[0] = palette.foliageBright;
     shape.foliage[1] = palette.foliageDark;
     shape.foliage[2] = palette.foliageWarm;
     constexpr std::array<std::size_t, 5> levels{treeTriangles, 8000, 1500, 300, 60};
     model.prototypes.push_back(makeBroadleafTree("broad-leaved tree", shape, levels, random.next()));
-    // Two on each side of the square, clear of the lanes.
+    // Two on each side of the middle block, between its houses and the street, clear of the lanes.
     constexpr float row = L::spacing / 2 - L::houseLine - 6;
     for (const float along : {-38.0f, 38.0f}) {
         for (const glm::vec2 place : {glm::vec2(along, -row), glm::vec2(row, along), glm::vec2(-along, row),
@@ -201,22 +188,22 @@ void addTrees(CityModel& model, const Palette& palette, Random& random) {
 }
 
 std::vector<TourStop> paperTour() {
-    // Along the southern side of the square, then north along its eastern side: at the kerb, high over the
-    // crossings.
+    // Along the southern side of the middle block, then north along its eastern side: at the kerb, high over
+    // the crossings.
     const float p = L::line(1) + L::kerbLine + 1.6f, q = L::line(2) - L::kerbLine - 1.6f;
     const std::array<TourKey, 12> keys{{
-        {{-300, p, 1.7f}, {-240, p - 6, 1.4f}, 7},
-        {{-215, p, 1.7f}, {-150, p - 7, 1.4f}, 8},
-        {{-160, p, 4.5f}, {-110, p - 8, 1}, 8},
-        {{-105, p, 6}, {-60, p - 8, 1}, 8},
-        {{-50, p, 2}, {-20, p - 6, 1.2f}, 6},
-        {{0, p, 1.6f}, {30, p - 5, 1.2f}, 6},
-        {{60, p, 3}, {110, p - 6, 2}, 7},
-        {{100, p, 7}, {140, p + 5, 1}, 6},
-        {{q, -90, 7.5f}, {q + 8, -40, 1}, 7},
-        {{q, -30, 2.5f}, {q + 6, 20, 1.4f}, 7},
-        {{q, 40, 1.7f}, {q + 5, 80, 1.4f}, 7},
-        {{q, 95, 6}, {q + 8, 140, 1}, 7},
+        {{-240, p, 1.7f}, {-190, p - 6, 1.4f}, 9},
+        {{-200, p, 1.7f}, {-150, p - 7, 1.4f}, 10},
+        {{-155, p, 5}, {-110, p - 8, 1}, 11},
+        {{-105, p, 6}, {-60, p - 8, 1}, 11},
+        {{-60, p, 2}, {-20, p - 6, 1.2f}, 9},
+        {{-10, p, 1.6f}, {30, p - 5, 1.2f}, 9},
+        {{50, p, 3}, {100, p - 6, 2}, 10},
+        {{96, p, 7}, {140, p + 5, 1}, 9},
+        {{q, -90, 7.5f}, {q + 8, -40, 1}, 9},
+        {{q, -40, 2.5f}, {q + 6, 10, 1.4f}, 10},
+        {{q, 20, 1.7f}, {q + 5, 65, 1.4f}, 10},
+        {{q, 85, 6}, {q + 8, 130, 1}, 9},
     }};
     return makeTour(keys);
 }

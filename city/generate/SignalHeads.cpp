@@ -6,6 +6,13 @@
 
 namespace city {
 
+namespace {
+
+constexpr float medianOffset = 0.35f;  // metres from a tram lane's edge: there is no more room in a median
+constexpr float medianSetBack = 3;     // metres before the stop line: clear of trams that turn right
+
+}  // namespace
+
 SignalLayout layOutSignals(const RoadNetwork& roads, float kerbOffset, float height) {
     SignalLayout layout;
     for (const Lane& lane : roads.lanes) {
@@ -30,7 +37,9 @@ SignalLayout layOutSignals(const RoadNetwork& roads, float kerbOffset, float hei
         const float length = glm::length(glm::vec2(way.x, way.y));
         if (!(length > 0)) continue;
         const glm::vec3 along(way.x / length, way.y / length, 0), right(along.y, -along.x, 0);
-        SignalPole pole{end + (0.5f * lane.width + kerbOffset) * right, -along};
+        const bool tram = lane.kind == LaneKind::tram;
+        SignalPole pole{end + (0.5f * lane.width + (tram ? medianOffset : kerbOffset)) * right, -along};
+        if (tram) pole.foot -= medianSetBack * along;
         float aside = 0;
         for (const auto& [junction, group] : groups) {
             SignalHead head;

@@ -15,6 +15,7 @@ namespace {
 constexpr float lampRow = 0.7f;
 constexpr float avenueTreeRow = 3.3f;  // crowns of 2.9 m, scaled up to 1.08, stay behind the kerb
 constexpr float streetTreeRow = 2.25f;
+constexpr float squareOpening = 9;  // metres to each side of its middle
 constexpr float cornerClearance =
     7;  // metres beyond the crossing street's houses that stay free for sight and crossings
 
@@ -36,15 +37,18 @@ void addTreePit(const SideFrame& side, float s, float d, const Palette& palette,
             pavementHeight + lift, palette.soil, 2);
 }
 
-void furnishAvenueSide(const SideFrame& side, const Palette& palette, const Standing& standing,
-                       Random& random, CityModel& model, ChunkCollector& chunks) {
+void furnishAvenueSide(const SideFrame& side, glm::vec2 square, const Palette& palette,
+                       const Standing& standing, Random& random, CityModel& model, ChunkCollector& chunks) {
     constexpr float treeStep = 9.5f;
     const int trees = static_cast<int>(side.length / treeStep);
     const float step = side.length / static_cast<float>(std::max(trees, 1));
     const int shelterAt = trees > 6 ? trees / 2 : -1;
     for (int k = 0; k < trees; ++k) {
         const float s = (static_cast<float>(k) + 0.5f) * step;
-        placeTree(model, standing.avenueTrees, side.at(s, avenueTreeRow), random);
+        // The square opens towards the avenue.
+        const glm::vec2 spot(side.at(s, avenueTreeRow));
+        if (spot.y > 0 && std::abs(spot.x - square.x) < squareOpening) continue;
+        placeTree(model, standing.avenueTrees, {spot, pavementHeight}, random);
         addTreePit(side, s, avenueTreeRow, palette, chunks);
         const float between = s + 0.5f * step;
         if (k + 1 == trees) break;
@@ -88,7 +92,7 @@ void furnishStreetSide(const SideFrame& side, bool trees, bool lamps, const Pale
                   side.at((static_cast<float>(k) + 0.5f) * step + 5 * 0.5f, lampRow), -side.away);
     }
     for (float s = 3; s < side.length; s += 4) {
-        if (!trees && random.chance(0.35)) place(model, standing.bollard, side.at(s, 0.4f), -side.away);
+        if (!trees && random.chance(0.2)) place(model, standing.bollard, side.at(s, 0.4f), -side.away);
     }
 }
 
@@ -110,9 +114,9 @@ void furnishStreets(const BoulevardPlan& plan, const Palette& palette, const Sta
             side.length = to - from;
             side.kerb = kerbLine(street.rank);
             if (street.rank == StreetRank::avenue) {
-                furnishAvenueSide(side, palette, standing, random, model, chunks);
+                furnishAvenueSide(side, plan.square, palette, standing, random, model, chunks);
             } else {
-                const bool trees = street.rank == StreetRank::street;
+                const bool trees = street.rank == StreetRank::street && hand < 0;
                 const bool lamps = hand > 0 || street.rank == StreetRank::tramStreet;
                 furnishStreetSide(side, trees, lamps, palette, standing, random, model, chunks);
             }

@@ -8,10 +8,13 @@ namespace city {
 
 namespace {
 
-glm::vec3 catmullRom(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d,
-                     float t) {
-    return 0.5f * ((2.0f * b) +
-                   t * ((c - a) + t * ((2.0f * a - 5.0f * b + 4.0f * c - d) + t * (3.0f * (b - c) + d - a))));
+/// Smooth in the plan; heights ease from key to key and never swing beyond them.
+glm::vec3 curve(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d, float t) {
+    glm::vec3 p =
+        0.5f * ((2.0f * b) +
+                t * ((c - a) + t * ((2.0f * a - 5.0f * b + 4.0f * c - d) + t * (3.0f * (b - c) + d - a))));
+    p.z = b.z + (c.z - b.z) * t * t * (3 - 2 * t);
+    return p;
 }
 
 }  // namespace
@@ -30,8 +33,8 @@ std::vector<TourStop> makeTour(std::span<const TourKey> keys) {
         const int pieces = std::max(1, static_cast<int>(std::round(seconds)));
         for (int i = 0; i < pieces; ++i) {
             const float t = static_cast<float>(i) / static_cast<float>(pieces);
-            tour.push_back({catmullRom(a.eye, b.eye, c.eye, d.eye, t),
-                            catmullRom(a.target, b.target, c.target, d.target, t), time + t * seconds});
+            tour.push_back({curve(a.eye, b.eye, c.eye, d.eye, t),
+                            curve(a.target, b.target, c.target, d.target, t), time + t * seconds});
         }
         time += seconds;
     }
