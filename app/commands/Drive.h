@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "app/commands/LoadScene.h"
+#include "app/commands/PreparedReflections.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/ReflectionEngine.h"
 #include "app/render/SceneRenderer.h"
 
 namespace app {
@@ -21,9 +23,8 @@ struct DriveSettings {
 /// What one frame took and did.
 struct FrameStats {
     double frameMs = 0;       ///< reflections and drawing, until OpenGL had finished
-    double reflectionMs = 0;  ///< the reflections' share
-    std::uint32_t mapsUpdated = 0;
-    std::uint64_t mapBytes = 0;
+    double reflectionMs = 0;  ///< the reflections' share: planning, building, uploading
+    ReflectionCounters reflections;
     RenderCounters drawn;
 };
 
@@ -43,16 +44,27 @@ class Drive {
 
     const vehicles::Traffic& traffic() const { return traffic_; }
     const FrameScene& frame() const { return frame_; }
+    /// What reflects; nothing while the method is `none` and no other was used before.
+    const ReflectionEngine* engine() const { return engine_.get(); }
+    /// Slots of the last frame's vehicles, empty for plain paint.
+    const VehicleReflections& reflections() const { return reflections_; }
 
   private:
     RenderOptions renderOptions() const;
+    ReflectionSettings reflectionSettings() const;
+    /// Heightfield, maps and engine for the present light.
+    void prepareReflecting();
 
     const Scene* scene_;
     std::uint64_t seed_;
+    PreparationOptions preparation_;
     DriveSettings settings_;
     vehicles::Traffic traffic_;
     std::unique_ptr<SceneRenderer> renderer_;
     Lighting lighting_;
+    PreparedReflections prepared_;
+    std::unique_ptr<ReflectionEngine> engine_;
+    VehicleReflections reflections_;
     FrameScene frame_;
     double lead_ = 0;  ///< seconds asked for and not yet simulated
 };

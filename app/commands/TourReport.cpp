@@ -1,5 +1,6 @@
 #include "app/commands/TourReport.h"
 
+#include <algorithm>
 #include <ostream>
 #include <utility>
 
@@ -16,8 +17,9 @@ TourReport::TourReport(const Options& options, std::string renderer)
 void TourReport::add(const FrameStats& stats) {
     frameMs_.push_back(stats.frameMs);
     reflectionMs_.push_back(stats.reflectionMs);
-    mapsUpdated_ += stats.mapsUpdated;
-    mapBytes_ = std::max(mapBytes_, stats.mapBytes);
+    mapsUpdated_ += stats.reflections.rebuilt;
+    mapBytes_ = std::max<std::uint64_t>(
+        mapBytes_, stats.reflections.localMapBytes + stats.reflections.referenceMapBytes);
 }
 
 void TourReport::finish(bool partial, std::ostream& out) const {
