@@ -24,6 +24,7 @@ using Bits = hn::RebindToUnsigned<Floats>;
 using VF = hn::Vec<Floats>;
 using VI = hn::Vec<Ints>;
 using MF = hn::Mask<Floats>;
+using MI = hn::Mask<Ints>;
 
 constexpr std::size_t widest = 16;  ///< lanes used at most
 
@@ -163,16 +164,22 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
     VI b = hn::Zero(i);
     VF t = zero;
     VF lastFace = hn::Set(f, static_cast<float>(EntryFace::start));
+    VF columnHit = zero;  // of the lanes that went through a top
     MF justSank = hn::Lt(one, zero);
     const auto settle = [&](MF which, int code) {
         face = hn::IfThenElse(which, hn::Set(f, static_cast<float>(code)), face);
         active = hn::AndNot(which, active);
     };
 
-    while (!hn::AllFalse(f, active)) {
-        const VI cell = indexOf(a, b);
-        const VI entry =
-            hn::BitCast(i, hn::GatherIndex(u, grid.open.entries.data(), hn::Add(cell, quadrant)));
+    // All rays start in one cell: four entries, one for each quadrant.
+    const std::size_t startCell = grid.index(fan.i0, fan.j0);
+    const auto startEntry = [&](std::size_t q) {
+        return hn::Set(i, static_cast<std::int32_t>(grid.open.entries[q * grid.columns.size() + startCell]));
+    };
+    const MI westInt = hn::RebindMask(i, west);
+    VI entry = hn::IfThenElse(hn::RebindMask(i, south), hn::IfThenElse(westInt, startEntry(3), startEntry(2)),
+                              hn::IfThenElse(westInt, startEntry(1), startEntry(0)));
+    for (;;) {  // inactive lanes come along and change nothing
         const VF z = hn::Add(oz, hn::Mul(t, dz));
         const VF vertical = hn::Add(vertical0, hn::Mul(vertical1, t));
         const VI own = hn::BitCast(i, hn::ShiftRight<16>(hn::BitCast(u, entry)));
@@ -190,7 +197,8 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
         active = hn::AndNot(wall, active);
         const MF single = hn::AndNot(leap, active);
         if (!hn::AllFalse(f, single)) {
-            const VF column = hn::GatherIndex(f, grid.columns.data(), cell);
+            const VF column = hn::GatherIndex(f, grid.columns.data(), indexOf(a, b));
+            columnHit = hn::IfThenElse(single, column, columnHit);
             level = hn::IfThenElse(leap, level, column);
             aheadA = hn::IfThenElse(hn::RebindMask(i, leap), aheadA, oneInt);
             aheadB = hn::IfThenElse(hn::RebindMask(i, leap), aheadB, oneInt);
@@ -255,6 +263,7 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
             // Through the top of the cell below well before its border?
             const VF column = hn::GatherIndex(f, grid.columns.data(), indexOf(a, b));
             const VF gap = hn::Add(hn::Sub(level, column), hn::Mul(hn::Set(f, 4.0f), vertical));
+            columnHit = hn::IfThenElse(sank, column, columnHit);
             const MF lands = hn::And(sank, hn::Lt(hn::Mul(gap, fastest), hn::Mul(room, hn::Neg(dz))));
             settle(lands, static_cast<int>(EntryFace::top));
         }
@@ -262,13 +271,16 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
         lastFace = hn::IfThenElse(byA, hn::Set(f, static_cast<float>(EntryFace::x)),
                                   hn::Set(f, static_cast<float>(EntryFace::y)));
         justSank = descends;
+        if (hn::AllFalse(f, active)) break;
+        entry =
+            hn::BitCast(i, hn::GatherIndex(u, grid.open.entries.data(), hn::Add(indexOf(a, b), quadrant)));
     }
     alignas(64) std::int32_t passedA[widest];
     alignas(64) std::int32_t passedB[widest];
     alignas(64) float columns[widest];
     hn::Store(a, i, passedA);
     hn::Store(b, i, passedB);
-    hn::Store(hn::GatherIndex(f, grid.columns.data(), indexOf(a, b)), f, columns);
+    hn::Store(columnHit, f, columns);
     hn::Store(hn::ConvertTo(i, face), i, faces);
     finish(fan, directionX, directionY, directionZ, faces, passedA, passedB, columns, parameters);
     return !hn::AllFalse(f, hn::Eq(face, hn::Set(f, static_cast<float>(undecided))));
