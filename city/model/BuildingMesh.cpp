@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
 
 #include "city/model/PolygonAlgebra.h"
 #include "city/model/RoofPlanes.h"
@@ -162,6 +164,39 @@ void appendPitchedRoof(const Footprint& part, const BuildingShape& shape,
     }
 }
 
+/// Half an ellipsoid over the footprint: rings that shrink towards the centre as the cosine, rise as the
+/// sine.
+void appendDome(const Footprint& part, glm::dvec2 centre, const BuildingShape& shape, Mesh& mesh) {
+    constexpr int rings = 6;
+    const auto n = part.outer.size();
+    const auto point = [&](std::size_t i, int ring) {
+        const double angle = 0.5 * std::numbers::pi * ring / rings;
+        const double shrink = ring == rings ? 0 : std::cos(angle);
+        return glm::dvec3(centre + shrink * (glm::dvec2(part.outer[i % n]) - centre),
+                          shape.eaves + std::sin(angle) * (double(shape.ridge) - shape.eaves));
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+        const double length = glm::distance(glm::dvec2(part.outer[i]), glm::dvec2(part.outer[(i + 1) % n]));
+        for (int ring = 0; ring < rings; ++ring) {
+            const glm::dvec3 a = point(i, ring);
+            const glm::dvec3 b = point(i + 1, ring);
+            const glm::dvec3 c = point(i + 1, ring + 1);
+            const glm::dvec3 d = point(i, ring + 1);
+            const auto normal = glm::vec3(glm::normalize(glm::cross(b - a, d - a)));
+            const auto vertex = [&](const glm::dvec3& p, double u, double v) {
+                return corner(glm::dvec2(p), p.z, normal, u / shape.roofPatternSize,
+                              v / shape.roofPatternSize, shape.roofMaterial);
+            };
+            const double v0 = ring * length;
+            if (ring + 1 == rings)
+                mesh.addTriangle(vertex(a, 0, v0), vertex(b, length, v0), vertex(c, length / 2, v0 + length));
+            else
+                mesh.addQuad(vertex(a, 0, v0), vertex(b, length, v0), vertex(c, length, v0 + length),
+                             vertex(d, 0, v0 + length));
+        }
+    }
+}
+
 bool usable(const BuildingShape& shape) {
     for (const float value : {shape.base, shape.eaves, shape.ridge, shape.storeyHeight, shape.bayWidth,
                               shape.groundFloorHeight, shape.roofPatternSize})
@@ -195,7 +230,11 @@ BuildStatus appendBuilding(const BuildingShape& shape, Mesh& mesh) {
         for (const auto& hole : part.holes)
             for (const WallEdge& edge : wallEdges(hole, shape.bayWidth))
                 appendWall(edge, heights, shape, {}, mesh);
-        if (planes.empty())
+        const bool domed = shape.roof == RoofShape::dome && shape.ridge - shape.eaves > cornerTolerance;
+        const std::optional<glm::dvec2> dome = domed ? domeCentre(part) : std::nullopt;
+        if (dome)
+            appendDome(part, *dome, shape, mesh);
+        else if (planes.empty())
             appendFlatRoof(part, shape, mesh);
         else
             appendPitchedRoof(part, shape, planes, mesh);

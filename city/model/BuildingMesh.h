@@ -15,7 +15,7 @@ struct Footprint {
     std::vector<std::vector<glm::vec2>> holes;
 };
 
-enum class RoofShape : std::uint8_t { flat, gabled, hipped, pyramidal };
+enum class RoofShape : std::uint8_t { flat, gabled, hipped, pyramidal, dome };
 
 /// A prismatic building or part of one.
 struct BuildingShape {
@@ -41,12 +41,13 @@ enum class BuildStatus : std::uint8_t {
 
 /// Appends walls (outward normals; courtyards' walls face the court) and roof, flat-shaded and closed but for
 /// the floor. Gabled, hipped and pyramidal roofs are built on quadrilateral-like footprints (without holes,
-/// filling most of their oriented bounding rectangle, whose longer axis the ridge follows) and fall back to
-/// flat, at the eaves, elsewhere. Texture coordinates: along walls, u counts bays, a whole number from corner
-/// to corner (corners that turn by less than 25 degrees belong to one curved wall; walls under a metre get a
-/// strip of blank pier); v counts storeys, a whole number from the ground floor's top to the eaves. The
-/// ground floor's v runs from 0 to 1. Gables above the eaves are blank. Cost: O(n log n) in corners, about 30
-/// microseconds for a plain house.
+/// filling most of their oriented bounding rectangle, whose longer axis the ridge follows), domes on
+/// footprints that can be seen whole from their middle; all fall back to flat, at the eaves, elsewhere.
+/// Texture coordinates: along walls, u counts bays, a whole number from corner to corner (corners that turn
+/// by less than 25 degrees belong to one curved wall; walls under a metre get a strip of blank pier); v
+/// counts storeys, a whole number from the ground floor's top to the eaves. The ground floor's v runs from 0
+/// to 1. Gables above the eaves are blank. Cost: O(n log n) in corners, about 30 microseconds for a plain
+/// house.
 BuildStatus appendBuilding(const BuildingShape& shape, Mesh& mesh);
 
 /// Triangles of a footprint, as corner triples, counter-clockwise seen from above; empty when degenerate.

@@ -97,6 +97,21 @@ GEOSGeometry* ringGeometry(const Geos& geos, const std::vector<glm::vec2>& ring)
     return GEOSGeom_createLinearRing_r(geos, corners);
 }
 
+/// nullptr for lines that have no two different, finite points.
+Geos::Geometry lineGeometry(const Geos& geos, std::span<const glm::vec2> line) {
+    std::vector<glm::vec2> points;
+    for (const glm::vec2 p : line) {
+        if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest)) return geos.own(nullptr);
+        if (points.empty() || points.back() != p) points.push_back(p);
+    }
+    if (points.size() < 2) return geos.own(nullptr);
+    GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(geos, static_cast<unsigned>(points.size()), 2);
+    if (!sequence) return geos.own(nullptr);
+    for (unsigned i = 0; i < points.size(); ++i)
+        GEOSCoordSeq_setXY_r(geos, sequence, i, points[i].x, points[i].y);
+    return geos.own(GEOSGeom_createLineString_r(geos, sequence));
+}
+
 /// nullptr for rings of fewer than three corners.
 Geos::Geometry polygonGeometry(const Geos& geos, const Footprint& footprint) {
     if (footprint.outer.size() < 3) return geos.own(nullptr);
@@ -273,6 +288,44 @@ std::vector<Footprint> offset(const Footprint& footprint, double distance) {
                                                GEOSBUF_CAP_FLAT, GEOSBUF_JOIN_MITRE, mitreLimit))
                     .get(),
                 out);
+    return out;
+}
+
+std::vector<Footprint> strip(std::span<const glm::vec2> line, double width) {
+    std::vector<Footprint> out;
+    if (!(width > 0)) return out;
+    const Geos geos;
+    const Geos::Geometry axis = lineGeometry(geos, line);
+    if (!axis) return out;
+    constexpr int segmentsPerQuarter = 4;
+    constexpr double mitreLimit = 2;
+    collect(geos,
+            geos.own(GEOSBufferWithStyle_r(geos, axis.get(), width / 2, segmentsPerQuarter, GEOSBUF_CAP_FLAT,
+                                           GEOSBUF_JOIN_MITRE, mitreLimit))
+                .get(),
+            out);
+    return out;
+}
+
+std::vector<Footprint> splitBy(const Footprint& footprint, const std::vector<std::vector<glm::vec2>>& lines) {
+    std::vector<Footprint> out;
+    const Geos geos;
+    const Geos::Geometry polygon = united(geos, {footprint});
+    if (!polygon) return out;
+    std::vector<GEOSGeometry*> pieces{GEOSBoundary_r(geos, polygon.get())};
+    for (const auto& line : lines)
+        if (Geos::Geometry geometry = lineGeometry(geos, line)) pieces.push_back(geometry.release());
+    const Geos::Geometry all = geos.own(GEOSGeom_createCollection_r(
+        geos, GEOS_GEOMETRYCOLLECTION, pieces.data(), static_cast<unsigned>(pieces.size())));
+    // The union of lines is cut at every crossing, which is what polygonizing asks for.
+    const Geos::Geometry noded = all ? geos.own(GEOSUnaryUnion_r(geos, all.get())) : geos.own(nullptr);
+    if (!noded) return out;
+    const GEOSGeometry* input[] = {noded.get()};
+    std::vector<Footprint> faces;
+    collect(geos, geos.own(GEOSPolygonize_r(geos, input, 1)).get(), faces);
+    for (Footprint& face : faces) {
+        for (Footprint& inside : intersection({face}, {footprint})) out.push_back(std::move(inside));
+    }
     return out;
 }
 

@@ -44,6 +44,12 @@ std::vector<Footprint> unite(const std::vector<Footprint>& footprints);
 /// Grown (distance > 0) or shrunk (< 0) with mitred corners.
 std::vector<Footprint> offset(const Footprint& footprint, double distance);
 
+/// The strip of `width` metres along a line, its ends square.
+std::vector<Footprint> strip(std::span<const glm::vec2> line, double width);
+
+/// The polygons into which lines cut an area; lines that end within it cut nothing there.
+std::vector<Footprint> splitBy(const Footprint& area, const std::vector<std::vector<glm::vec2>>& lines);
+
 /// The rectangle of least area around an outer ring: centre, unit direction of its longer side, half sides.
 struct OrientedRectangle {
     glm::vec2 centre{0};

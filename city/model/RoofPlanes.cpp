@@ -17,7 +17,9 @@ constexpr double leastRectangularity = 0.8;
 
 std::vector<RoofPlane> roofPlanes(const Footprint& clean, RoofShape roof, double eaves, double ridge) {
     const double rise = ridge - eaves;
-    if (roof == RoofShape::flat || !(rise > cornerTolerance) || !clean.holes.empty()) return {};
+    if (roof == RoofShape::flat || roof == RoofShape::dome || !(rise > cornerTolerance) ||
+        !clean.holes.empty())
+        return {};
     const auto rectangle = orientedRectangle(clean);
     if (!rectangle || !(rectangle->half.y > 0)) return {};
     if (area(clean) < leastRectangularity * double(rectangle->area())) return {};
@@ -38,6 +40,34 @@ std::vector<RoofPlane> roofPlanes(const Footprint& clean, RoofShape roof, double
         rising(-along, half.x, slope);
     }
     return planes;
+}
+
+bool carriesRoof(const Footprint& clean, RoofShape roof) {
+    if (roof == RoofShape::flat) return true;
+    if (roof == RoofShape::dome) return domeCentre(clean).has_value();
+    return !roofPlanes(clean, roof, 0, 1).empty();
+}
+
+std::optional<glm::dvec2> domeCentre(const Footprint& clean) {
+    if (!clean.holes.empty() || clean.outer.size() < 3) return std::nullopt;
+    const std::size_t n = clean.outer.size();
+    const glm::dvec2 origin = clean.outer.front();
+    const auto at = [&](std::size_t i) { return glm::dvec2(clean.outer[i % n]) - origin; };
+    glm::dvec2 moment(0);
+    double twice = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double cross = at(i).x * at(i + 1).y - at(i).y * at(i + 1).x;
+        twice += cross;
+        moment += cross * (at(i) + at(i + 1));
+    }
+    if (!(twice > 0)) return std::nullopt;
+    const glm::dvec2 centre = moment / (3 * twice);
+    for (std::size_t i = 0; i < n; ++i) {
+        const glm::dvec2 a = at(i) - centre;
+        const glm::dvec2 b = at(i + 1) - centre;
+        if (!(a.x * b.y - a.y * b.x > 0)) return std::nullopt;
+    }
+    return centre + origin;
 }
 
 double roofHeight(const std::vector<RoofPlane>& planes, glm::dvec2 p) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
 #include "city/model/BuildingMesh.h"
@@ -21,6 +22,12 @@ struct RoofPlane {
 /// Planes of a roof, or none where the shape is flat, has no height, or the footprint is not like a
 /// quadrilateral.
 std::vector<RoofPlane> roofPlanes(const Footprint& clean, RoofShape roof, double eaves, double ridge);
+
+/// Whether a roof of this shape can stand on the footprint; flat ones always can.
+bool carriesRoof(const Footprint& clean, RoofShape roof);
+
+/// The point that a dome rises over, if every corner can be seen from it: the outer ring's centre of gravity.
+std::optional<glm::dvec2> domeCentre(const Footprint& clean);
 
 /// Height of the lowest plane. At least one plane.
 double roofHeight(const std::vector<RoofPlane>& planes, glm::dvec2 p);
