@@ -82,6 +82,8 @@ void addTownHall(const Lot& lot, const Palette& palette, Random& random, HouseMe
     const float eaves = design.eaves();
     addPrism(meshes.solid, ring(4), eaves - 1, 33, design.style.blank, design.style.trim, 3);
     addPrism(meshes.solid, ring(4.5f), 33, 34, design.style.trim, design.style.trim, 3);
+    addDeck(meshes.solid, ring(4.5f), 33, design.style.trim, 3, false);
+    addDeck(meshes.solid, ring(3), 39, design.style.trim, 3, false);
     for (std::size_t k = 0; k < 4; ++k) {
         // A clock on each side.
         const glm::vec2 p = ring(4.06f)[k], q = ring(4.06f)[(k + 1) % 4], side = glm::normalize(q - p),
@@ -128,6 +130,7 @@ void addChurch(const Lot& lot, const Palette& palette, Random& random, HouseMesh
         for (std::size_t k = 0; k < 4; ++k)
             addWall(meshes.solid, tower[k], tower[(k + 1) % 4], 0, 30, design.style.facade, 1, 4);
         addPrism(meshes.solid, ring(3.9f), 30, 30.8f, design.style.trim, design.style.trim, 3);
+        addDeck(meshes.solid, ring(3.9f), 30, design.style.trim, 3, false);
         std::array<glm::vec2, 8> spire;
         for (std::size_t k = 0; k < 8; ++k) {
             const Turn turn((static_cast<double>(k) + 0.5) / 8);

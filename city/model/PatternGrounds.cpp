@@ -124,8 +124,8 @@ PatternImage paintRoofFlat() {
     PatternCanvas canvas(groundSize);
     canvas.fill(glm::vec3(0.92f));
     canvas.grain(5, 6, 0.08f, 68);
-    canvas.box({0, 0}, {0.012f, 1}, glm::vec3(0.74f));
-    canvas.box({0, 0}, {1, 0.012f}, glm::vec3(0.78f));
+    canvas.box({0.3f, 0}, {0.312f, 1}, glm::vec3(0.74f));
+    canvas.box({0, 0.3f}, {1, 0.312f}, glm::vec3(0.78f));
     return canvas.image();
 }
 
