@@ -69,6 +69,19 @@ void makeLanes(NetworkDraft& draft) {
     }
 }
 
+/// The innermost lane of the same kind and street the other way.
+std::uint32_t oppositeLane(const NetworkDraft& draft, std::uint32_t lane) {
+    const LaneOrigin& origin = draft.origins[lane];
+    std::uint32_t best = noIndex;
+    for (std::uint32_t other : draft.lanesOfStreet[origin.street]) {
+        if (draft.origins[other].forward == origin.forward ||
+            draft.roads.lanes[other].kind != draft.roads.lanes[lane].kind)
+            continue;
+        if (best == noIndex || draft.origins[other].fromKerb > draft.origins[best].fromKerb) best = other;
+    }
+    return best;
+}
+
 /// Takes out lanes that lead nowhere (and, in turn, those that lead only to them).
 void pruneBlindLanes(NetworkDraft& draft) {
     RoadNetwork& roads = draft.roads;
@@ -82,10 +95,12 @@ void pruneBlindLanes(NetworkDraft& draft) {
             const bool leadsOn = std::any_of(ways.begin(), ways.end(), [&](std::uint32_t c) {
                 return !dead[roads.connections[c].toLane];
             });
-            if (!leadsOn) {
-                dead[i] = true;
-                changed = true;
-            }
+            if (leadsOn) continue;
+            // A two-way street turns back rather than die with what it leads to.
+            const std::uint32_t back = oppositeLane(draft, i);
+            if (back != noIndex && !dead[back] && turnBack(draft, i, back)) continue;
+            dead[i] = true;
+            changed = true;
         }
     }
     std::vector<std::uint32_t> laneIndex(roads.lanes.size(), noIndex);

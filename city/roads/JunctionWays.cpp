@@ -232,7 +232,9 @@ void connectKind(NetworkDraft& draft, std::uint32_t j, LaneKind kind) {
             const std::size_t inner =
                 exit.lanes.size() - 1 - std::min(lanes.size() - 1 - k, exit.lanes.size() - 1);
             connect(draft, j, lanes[k], exit.lanes[inner],
-                    turningBulb(draft, lanes[k], exit.lanes[inner], room));
+                    kind == LaneKind::tram
+                        ? curveBetween(draft, lanes[k], exit.lanes[inner])  // over to the other track
+                        : turningBulb(draft, lanes[k], exit.lanes[inner], room));
         }
     }
 }
@@ -335,6 +337,15 @@ void connect(NetworkDraft& draft, std::uint32_t junction, std::uint32_t from, st
     draft.roads.connections.push_back(std::move(connection));
     draft.roads.lanes[from].connections.push_back(index);
     draft.roads.junctions[junction].connections.push_back(index);
+}
+
+bool turnBack(NetworkDraft& draft, std::uint32_t from, std::uint32_t to) {
+    const LaneOrigin& origin = draft.origins[from];
+    const std::size_t before = draft.roads.connections.size();
+    const std::uint32_t j = draft.layout->streets[origin.street].junction[origin.forward ? 1 : 0];
+    const bool tram = draft.roads.lanes[from].kind == LaneKind::tram;
+    connect(draft, j, from, to, tram ? curveBetween(draft, from, to) : turningBulb(draft, from, to, 6.0));
+    return draft.roads.connections.size() > before;
 }
 
 void connectJunctions(NetworkDraft& draft) {

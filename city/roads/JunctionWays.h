@@ -40,6 +40,9 @@ glm::dvec3 startDirection(const std::vector<glm::vec3>& line);
 void connect(NetworkDraft& draft, std::uint32_t junction, std::uint32_t from, std::uint32_t to,
              const Polyline& line);
 
+/// Adds the way from the end of a lane back into another one beside it; false if there is one already.
+bool turnBack(NetworkDraft& draft, std::uint32_t from, std::uint32_t to);
+
 /// The ways across each junction: turns by lane, tram ways, turning bulbs at dead ends, links between the
 /// loose ends of one-way streets.
 void connectJunctions(NetworkDraft& draft);

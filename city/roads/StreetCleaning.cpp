@@ -8,9 +8,10 @@ namespace city {
 
 namespace {
 
-constexpr double samePoint = 0.02;     // metres; two centimetres matter to no street
-constexpr double shortestStub = 4.0;   // dead ends shorter than a car lead nowhere
-constexpr double longestRing = 300.0;  // way around the largest roundabout
+constexpr double samePoint = 0.02;       // metres; two centimetres matter to no street
+constexpr double shortestStub = 4.0;     // dead ends shorter than a car lead nowhere
+constexpr double shortestTramSpur = 45;  // a tram does not fit on less
+constexpr double longestRing = 300.0;    // way around the largest roundabout
 
 struct Incidence {
     std::uint32_t edge;
@@ -66,6 +67,7 @@ CleanStreets cleanStreets(const StreetGraph& graph) {
     std::erase_if(out.edges, [&](const CleanStreets::Edge& e) {
         const bool deadEnd = at[e.from].size() == 1 || at[e.to].size() == 1;
         const bool alone = at[e.from].size() == 1 && at[e.to].size() == 1;
+        if (!e.attributes->cars) return deadEnd && lengthOf(e.shape) < shortestTramSpur;
         return deadEnd && !alone && lengthOf(e.shape) < shortestStub;
     });
     fill();

@@ -12,11 +12,14 @@ constexpr double longestGroup =
     250;  // metres of zones without a place to stand; beyond, they are taken as they come
 constexpr double patience = 9;    // seconds before a vehicle that must yield goes where the way is free
 constexpr double claimAfter = 5;  // seconds before a waiting vehicle holds back others that could still stop
+constexpr double claimUntil = 14;
+constexpr double claimPeriod = 20;
 constexpr double otherWayAfter = 14;  // seconds before it looks for another way out
 constexpr double yieldMargin =
     1.0;  // seconds between leaving a crossing and the arrival of who has right of way
-constexpr double yieldReach = 60;     // metres up the other approach that a driver looks
-constexpr double amberBraking = 3.0;  // m/s^2; who would have to brake harder passes on amber
+constexpr double yieldReach = 60;       // metres up the other approach that a driver looks
+constexpr double longestIdleGrant = 5;  // seconds
+constexpr double amberBraking = 3.0;    // m/s^2; who would have to brake harder passes on amber
 
 }  // namespace
 
@@ -49,10 +52,44 @@ void Traffic::State::findNextStop(Vehicle& v) {
     v.stopIsPlan = !net.ways[v.path.back()].next.empty();
 }
 
+/// Gives back what it was granted but has not begun to use, where the signal has changed since and it can
+/// still stop, or where it has stood for long (behind a leader, say) and only keeps others away.
+void Traffic::State::reconsider(Vehicle& v) {
+    if (v.granted <= v.front) return;
+    bool giveBack = v.stood > longestIdleGrant;
+    // Where it would have to stop then: at the first zone that it is not in yet.
+    double first = v.granted;
+    for (const ZoneHold& hold : v.holds) {
+        if (hold.begin > v.front) first = std::min(first, hold.begin);
+    }
+    if (v.speed * v.speed >= 2 * amberBraking * (first - v.front)) return;
+    for (std::size_t i = v.current + 1; i < v.path.size() && v.starts[i] < v.granted && !giveBack; ++i) {
+        const Way& way = net.ways[v.path[i]];
+        if (way.signalGroup == city::noIndex) continue;
+        giveBack = colour(way.junction, way.signalGroup) != SignalColour::green &&
+                   v.speed * v.speed < 2 * amberBraking * (v.starts[i] - v.front);
+    }
+    if (!giveBack) return;
+    // A zone that it is in already stays, and with it all that were granted to leave it.
+    for (const ZoneHold& hold : v.holds) {
+        if (hold.begin <= v.front && hold.end > v.front) return;
+    }
+    if (net.ways[v.path[v.current]].connection) return;
+    std::erase_if(v.holds, [&](const ZoneHold& hold) {
+        if (hold.begin <= v.front) return false;
+        --zones[hold.zone].holders[hold.side];
+        return true;
+    });
+    v.granted = v.front;
+    findNextStop(v);
+}
+
 void Traffic::State::askForWay(std::uint32_t index, double dt) {
     Vehicle& v = vehicles[index];
     const double b = kinds[v.kind].deceleration;
     const double reach = v.speed * v.speed / (2 * b) + 1.2 * v.speed + 4;
+    v.stood = v.speed < 0.05 ? v.stood + dt : 0;
+    reconsider(v);
     if (v.stopIsPlan && v.nextStop - v.front < 100) findNextStop(v);
     for (int round = 0; round < 8 && v.nextStop - v.front < reach; ++round) {
         if (!grant(index)) {
@@ -76,10 +113,15 @@ bool Traffic::State::grant(std::uint32_t index) {
     Vehicle& v = vehicles[index];
     const double stop = v.nextStop;
     double end = stop;
-    v.noRoom = false;
+    v.refusal = Refusal::none;
+    const auto refuse = [&](Refusal why) {
+        v.refusal = why;
+        return false;
+    };
     struct Wanted {
         std::uint32_t zone;
         std::uint8_t side;
+        double begin;
         double end;
     };
     static thread_local std::vector<Wanted> wanted;
@@ -102,10 +144,10 @@ bool Traffic::State::grant(std::uint32_t index) {
                 const SignalColour light = colour(way.junction, way.signalGroup);
                 if (light == SignalColour::red) {
                     // Standing at a second red is fine if there is room before it; here there is none.
-                    return false;
+                    return refuse(Refusal::signal);
                 }
                 const bool canStop = v.speed * v.speed < 2 * amberBraking * (start - v.front);
-                if (light == SignalColour::amber && canStop) return false;
+                if (light == SignalColour::amber && canStop) return refuse(Refusal::signal);
             }
             crossed.push_back(i);
             end = std::max(end, start);
@@ -113,8 +155,9 @@ bool Traffic::State::grant(std::uint32_t index) {
         for (const Way::ZoneSide& zone : way.zones) {
             const double from = start + zone.begin;
             if (from <= v.granted || start + zone.end < v.front) continue;
-            if (from > end + room) break;
-            wanted.push_back({zone.zone, zone.side, start + zone.end});
+            // Nobody stops on a connection: the last place to stand is the lane before it.
+            if ((way.connection ? start : from) > end + room) break;
+            wanted.push_back({zone.zone, zone.side, from, start + zone.end});
             end = std::max(end, start + zone.end);
         }
     }
@@ -128,12 +171,13 @@ bool Traffic::State::grant(std::uint32_t index) {
         taken = taken || others > 0;
     }
     if (!roomBehind(v, index, end)) {
-        v.noRoom = true;
-        return false;
+        return refuse(Refusal::noRoom);
     }
     // From here on only others' courtesy is missing: a long wait makes it felt.
     const auto claim = [&] {
-        if (v.waited < claimAfter) return;
+        // Off and on, so that claims that cannot be met do not lock a crossing for good.
+        const double turn = std::fmod(v.waited, claimPeriod);
+        if (turn < claimAfter || turn > claimUntil) return;
         for (const Wanted& want : wanted) {
             ZoneState& zone = zones[want.zone];
             if (zone.claimed + 2 > substeps && zone.claimWait >= v.waited) continue;
@@ -143,20 +187,20 @@ bool Traffic::State::grant(std::uint32_t index) {
         }
     };
     claim();
-    if (taken) return false;
+    if (taken) return refuse(Refusal::taken);
     for (const Wanted& want : wanted) {
         const ZoneState& zone = zones[want.zone];
         if (zone.claimSide != want.side && zone.claimed + 2 > substeps && zone.claimWait > v.waited)
-            return false;
+            return refuse(Refusal::claimed);
     }
     for (std::size_t i : crossed) {
         if (mustYield(v, index, i, end + v.length - v.front)) {
-            if (v.waited < patience * (0.8 + 0.4 * v.temper)) return false;
+            if (v.waited < patience * (0.8 + 0.4 * v.temper)) return refuse(Refusal::yields);
         }
     }
     for (const Wanted& want : wanted) {
         ++zones[want.zone].holders[want.side];
-        v.holds.push_back({want.zone, want.side, want.end});
+        v.holds.push_back({want.zone, want.side, want.begin, want.end});
     }
     v.granted = std::max(end, stop) + 1e-6;
     findNextStop(v);
@@ -180,7 +224,7 @@ bool Traffic::State::mustYield(const Vehicle& v, std::uint32_t index, std::size_
     const auto arrives = [&](const Entry& e, std::uint32_t via, double toLine) {
         const Vehicle& u = vehicles[e.vehicle];
         if (e.vehicle == index || e.ghost || toLine < -0.5 || toLine > yieldReach) return false;
-        if (u.noRoom && u.speed < 1) return false;
+        if (u.refusal == Refusal::noRoom && u.speed < 1) return false;
         if (u.speed < 0.5 && toLine > 8) return false;
         // Does it go that way at all?
         bool comes = false;

@@ -20,8 +20,12 @@ struct SeededRandom {
 struct ZoneHold {
     std::uint32_t zone = 0;
     std::uint8_t side = 0;
-    double end = 0;  ///< odometer
+    double begin = 0;  ///< odometer
+    double end = 0;
 };
+
+/// Why a vehicle was not granted its way.
+enum class Refusal : std::uint8_t { none, signal, taken, noRoom, claimed, yields };
 
 /// One vehicle. All places along its way are odometer readings: metres driven by its front since it was
 /// placed, so a way, a zone and a stop line are intervals and points of one axis.
@@ -41,8 +45,9 @@ struct Vehicle {
     double granted = 0;       ///< all zones that begin before this are held
     double nextStop = 0;      ///< where it must stop unless more is granted
     bool stopIsPlan = false;  ///< nothing stops it there: only the plan ends
+    double stood = 0;         ///< seconds without motion
     double waited = 0;        ///< seconds in front of a stop
-    bool noRoom = false;      ///< the last refusal was for want of room behind the crossing
+    Refusal refusal = Refusal::none;  ///< why it was not granted more the last time
 
     // A lane change: until `changeEnd` the vehicle counts in both lanes.
     std::uint32_t changeFrom = city::noIndex;
@@ -95,6 +100,7 @@ struct Traffic::State {
     void findNextStop(Vehicle& v);
     void askForWay(std::uint32_t index, double dt);
     bool grant(std::uint32_t index);
+    void reconsider(Vehicle& v);
     bool mustYield(const Vehicle& v, std::uint32_t index, std::size_t pathIndex, double clearDistance) const;
     bool roomBehind(const Vehicle& v, std::uint32_t index, double groupEnd) const;
     void release(Vehicle& v);

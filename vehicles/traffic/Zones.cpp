@@ -11,9 +11,11 @@ namespace vehicles {
 
 namespace {
 
-constexpr double clearance = 0.15;       // metres kept between two swept paths
-constexpr double alongside = 0.5;        // radians; less between two directions is running along
-constexpr double shortestShared = 12.0;  // metres; shorter overlaps are crossed one at a time
+constexpr std::size_t longestChain = 16;  // ways that a body may lie on
+constexpr double clearance = 0.15;        // metres kept between two swept paths
+constexpr double alongside = 0.5;         // radians; less between two directions is running along
+constexpr double shortestShared = 12.0;   // metres; shorter overlaps are crossed one at a time
+constexpr float sameTrack = 1.2f;         // metres between two lines that are driven as one
 constexpr double entryLength = 1.0;  // metres at the start of a shared stretch where vehicles get into file
 constexpr double joinReach =
     14.0;  // metres of drive within which two points on consecutive ways are neighbours
@@ -69,9 +71,28 @@ class Reach {
                 ids_.push_back(part.firstSample + i);
             }
         };
-        if (before != city::noIndex) append(before, network_.ways[before].length - longest - 3, 1e9);
+        // A long body lies over several short ways: as many behind and ahead as it covers, along one of the
+        // routes.
+        std::vector<std::uint32_t> behind;
+        double covered = 0;
+        for (std::uint32_t w = before;
+             w != city::noIndex && covered < longest + 3 && behind.size() < longestChain;) {
+            behind.push_back(w);
+            covered += network_.ways[w].length;
+            w = network_.ways[w].previous.empty() ? city::noIndex : network_.ways[w].previous.front();
+        }
+        for (std::size_t k = behind.size(); k-- > 0;) {
+            const bool last = k + 1 == behind.size();
+            append(behind[k], last ? covered - longest - 3 : 0, 1e9);
+        }
         append(way, 0, 1e9);
-        if (after != city::noIndex) append(after, 0, longest + 3);
+        covered = 0;
+        for (std::uint32_t w = after, n = 0; w != city::noIndex && covered < longest + 3 && n < longestChain;
+             ++n) {
+            append(w, 0, longest + 3 - covered);
+            covered += network_.ways[w].length;
+            w = network_.ways[w].next.empty() ? city::noIndex : network_.ways[w].next.front();
+        }
         along_.assign(1, 0.0);
         double bend = 0;
         for (std::size_t i = 1; i < line_.size(); ++i) {
@@ -174,11 +195,14 @@ void classify(WayNetwork& network, std::span<const Contact> contacts) {
     Way& b = network.ways[any.b];
     double a0 = 1e18, a1 = -1e18, b0 = 1e18, b1 = -1e18;
     bool along = true;
+    float apart = 1e9f;
     for (const Contact& c : contacts) {
         a0 = std::min(a0, c.i * a.spacing);
         a1 = std::max(a1, c.i * a.spacing);
         b0 = std::min(b0, c.j * b.spacing);
         b1 = std::max(b1, c.j * b.spacing);
+        apart = std::min(
+            apart, glm::distance(network.samples[a.firstSample + c.i], network.samples[b.firstSample + c.j]));
         along = along &&
                 glm::dot(directionOf(network, a, c.i), directionOf(network, b, c.j)) > std::cos(alongside);
     }
@@ -189,7 +213,8 @@ void classify(WayNetwork& network, std::span<const Contact> contacts) {
     b1 = std::min(b.length, b1 + 0.5 * b.spacing);
     const bool siblings =
         a.connection && b.connection && a.previous.front() == b.previous.front() && a0 < 1.5 && b0 < 1.5;
-    const bool sharedRun = along && a1 - a0 > shortestShared && b1 - b0 > shortestShared &&
+    const bool sharedRun = along && apart < sameTrack && a.connection == b.connection &&
+                           a1 - a0 > shortestShared && b1 - b0 > shortestShared &&
                            std::abs((a1 - a0) - (b1 - b0)) < 0.2 * (a1 - a0);
     if (siblings) {
         // Both start at the end of the same lane: in file until they have parted.
