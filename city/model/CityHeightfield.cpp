@@ -58,7 +58,8 @@ Heightfield fieldOver(const Aabb& box, float cellSize) {
 
 Heightfield cityHeightfield(const CityModel& city, float cellSize) {
     Heightfield field = fieldOver(built(city), cellSize);
-    for (const Chunk& chunk : city.chunks) rasterise(chunk.mesh, glm::mat4(1), Coverage::centre, field);
+    for (const Chunk& chunk : city.chunks)
+        if (chunk.kind != ChunkKind::furniture) rasterise(chunk.mesh, glm::mat4(1), Coverage::centre, field);
     for (const Placement& placement : city.placements) {
         const Prototype& prototype = city.prototypes[placement.prototype];
         if (prototype.inHeightfield && !prototype.levels.empty())

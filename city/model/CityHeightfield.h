@@ -5,8 +5,9 @@
 
 namespace city {
 
-/// The city seen from above: ground, buildings, furniture and those placements whose prototype counts as a column
-/// (trees: their crowns become solid). Covers buildings, placements and lanes with a margin of 30 m, within the city's
+/// The city seen from above: ground, buildings and those placements whose prototype counts as a column (trees: their crowns become
+/// solid). Chunks of furniture (awnings, balconies, cornices, signs) are left out: as columns they would stand down to the pavement and
+/// move the fronts behind them by a metre. Covers buildings, placements and lanes with a margin of 30 m, within the city's
 /// bounds; a plain that runs on to the horizon does not blow it up. A city with nothing in it gives one empty cell. Throws
 /// std::invalid_argument for a cell that is not finite and positive or so small that the field would pass 2^28 cells. Cost: linear in
 /// triangles and cells.

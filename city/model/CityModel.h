@@ -15,6 +15,7 @@
 
 namespace city {
 
+/// Furniture juts out or hangs (awnings, balconies, signs) and is no column of the heightfield.
 enum class ChunkKind : std::uint8_t { ground, building, furniture };
 
 /// A piece of the city that is drawn and culled as one: at most about a block, already in world coordinates.
