@@ -148,7 +148,7 @@ void addCourtHouse(const Ring& ring, const Palette& palette, Random& random, Chu
     constexpr float shortest = 14, halfDepth = 5.5f, gap = 6;  // metres
     const glm::vec2 c = centreOf(ring);
     const glm::vec2 along = glm::normalize(ring[1] - ring[0]), out = outward(ring[0], ring[1]);
-    const float half = 0.5f * glm::length(ring[1] - ring[0]) - gap;
+    const float half = 0.5f * glm::length(ring[1] - ring[0]) - 2 * gap;
     const glm::vec2 middle = c - random.range(-6, 6) * out;
     const Ring walls{middle - half * along + halfDepth * out, middle + half * along + halfDepth * out,
                      middle + half * along - halfDepth * out, middle - half * along - halfDepth * out};
