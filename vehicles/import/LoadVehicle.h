@@ -6,9 +6,10 @@
 
 namespace vehicles {
 
-/// Loads a vehicle from a binary glTF file (y up, +z forward, as glTF asks), scaled to a length in metres, with levels of detail.
-/// Materials are mapped to surfaces by name and properties; paint is replaced by the instance's. Throws std::runtime_error: one
-/// sentence with file, place in it, cause and remedy (Draco-compressed files are named as such).
+/// Loads a vehicle from a binary glTF file (y up, +z forward, as glTF asks), scaled to a length in metres,
+/// with levels of detail. Materials are mapped to surfaces by name and properties; paint is replaced by the
+/// instance's. Throws std::runtime_error: one sentence with file, place in it, cause and remedy
+/// (Draco-compressed files are named as such).
 VehicleModel loadVehicle(const std::filesystem::path& file, float length);
 
 }  // namespace vehicles
