@@ -68,11 +68,12 @@ void Traffic::State::reconsider(Vehicle& v) {
         if (way.signalGroup == city::noIndex) continue;
         giveBack = colour(way.junction, way.signalGroup) != SignalColour::green &&
                    v.speed * v.speed < 2 * amberBraking * (v.starts[i] - v.front);
+        break;
     }
     if (!giveBack) return;
     // A zone that it is in already stays, and with it all that were granted to leave it.
     for (const ZoneHold& hold : v.holds) {
-        if (hold.begin <= v.front && hold.end > v.front) return;
+        if (hold.begin <= v.front) return;
     }
     if (net.ways[v.path[v.current]].connection) return;
     std::erase_if(v.holds, [&](const ZoneHold& hold) {
@@ -140,12 +141,11 @@ bool Traffic::State::grant(std::uint32_t index) {
         const Way& way = net.ways[v.path[i]];
         const bool needsLine = way.connection && (way.signalGroup != city::noIndex || !way.zones.empty());
         if (needsLine && i > v.current && start > v.granted && start >= stop && start < end + room) {
-            if (way.signalGroup != city::noIndex) {
+            // A second signal with no room to stand before it belongs to the same crossing; it is obeyed if
+            // that can be.
+            if (way.signalGroup != city::noIndex && (crossed.empty() || v.waited < patience)) {
                 const SignalColour light = colour(way.junction, way.signalGroup);
-                if (light == SignalColour::red) {
-                    // Standing at a second red is fine if there is room before it; here there is none.
-                    return refuse(Refusal::signal);
-                }
+                if (light == SignalColour::red) return refuse(Refusal::signal);
                 const bool canStop = v.speed * v.speed < 2 * amberBraking * (start - v.front);
                 if (light == SignalColour::amber && canStop) return refuse(Refusal::signal);
             }
@@ -274,15 +274,22 @@ bool Traffic::State::roomBehind(const Vehicle& v, std::uint32_t index, double gr
             if (start + entry.front < lastRear) continue;
             last = entry.vehicle;
             lastRear = rear;
-            if (i == v.current && start + entry.front < v.starts[i + 1]) {
-                // In the same lane, ahead: it must have its own grant, or ours would lock it in.
-                const double laneEnd = v.starts[i + 1];
-                const double itsLaneEnd = u.starts[u.current + 1];
-                if (v.nextStop >= laneEnd - 1e-6 && u.granted <= itsLaneEnd && u.path[u.current] == w)
-                    return false;
-                const bool sameWay = u.current + 1 < u.path.size() && i + 1 < v.path.size() &&
-                                     u.path[u.current + 1] == v.path[i + 1];
-                if (!sameWay) continue;
+            if (rear < groupEnd) {
+                // Whoever is still within the crossing must be free to leave it, or what is granted here
+                // would lock it in.
+                const double front = start + entry.front;
+                const double itsStop = u.stopIsPlan ? 1e18 : front + u.nextStop - u.front;
+                const bool frontHere = front < v.starts[i + 1];
+                const std::uint32_t itsNext =
+                    frontHere ? (u.current + 1 < u.path.size() ? u.path[u.current + 1] : city::noIndex)
+                              : u.path[u.current];
+                bool together = entry.ghost;
+                for (std::size_t k = i + 1; k < v.path.size() && k < i + 8; ++k)
+                    together = together || v.path[k] == itsNext;
+                const double mustReach =
+                    together ? groupEnd : std::min(groupEnd, v.starts[i + 1]) + (frontHere ? 1e-3 : u.length);
+                if (itsStop < mustReach) return false;
+                if (!together) continue;
             }
             if (rear < groupEnd) {
                 needed += u.length + standingGap;
