@@ -8,7 +8,8 @@ namespace city {
 
 namespace {
 
-constexpr float greenTime = 18;  // seconds; the usual length in towns
+constexpr float greenTime = 18;       // seconds; the usual length in towns
+constexpr float aloneGreenTime = 45;  // where nobody but pedestrians waits
 constexpr float leftGreenTime = 8;
 constexpr float amberTime = 3;     // 50 km/h: the time to brake at 2.3 m/s^2 after a second of thought
 constexpr float clearingTime = 2;  // all red: a car that passed on amber leaves a 20 m crossing
@@ -110,7 +111,7 @@ void planSignals(NetworkDraft& draft, const std::vector<bool>& signalled) {
                 if (approaches[approachOf(connection)].pair != p) continue;
                 connection.signalGroup = turnOf(connection) > leftTurn ? left : through;
             }
-            add(greenTime, {through}, false);
+            add(pairs == 1 ? aloneGreenTime : greenTime, {through}, false);
             add(amberTime, {through}, true);
             add(pairs == 1 && !ownLeft ? walkTime : clearingTime, {}, false);
             if (ownLeft) {

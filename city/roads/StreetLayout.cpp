@@ -15,8 +15,8 @@ constexpr double crossingDepth = 4.5;  // zebra of 3 m with half a metre and a m
 constexpr double stopSetback = 0.8;    // from the junction's area to the stop line where there is no crossing
 constexpr double longestCut = 24.0;    // streets that part at an acute angle overlap for ever; they stop here
 constexpr double turningRoom = 15.0;   // length of a turning bulb at a dead end
-constexpr double waitingRoom = 6.0;    // lanes between two crossings hold a car, or the crossings are one
-constexpr double clusterReach = 45.0;  // no joined crossing is wider than this
+constexpr double waitingRoom = 10.0;   // lanes between two crossings hold a car, or the crossings are one
+constexpr double clusterReach = 55.0;  // no joined crossing is wider than this
 
 /// How far from its end a street's carriageway still overlaps another street's of the same junction.
 double overlapWith(const Street& street, int end, const Street& other, int otherEnd) {
@@ -259,7 +259,7 @@ StreetLayout layOutStreets(const StreetGraph& graph) {
         const bool signalOfCrossing = street.length < 25 && ((mereSignal(0, degree0) && degree1 >= 3) ||
                                                              (mereSignal(1, degree1) && degree0 >= 3));
         const bool tooShort = street.length < 6 || signalOfCrossing ||
-                              (crossings && street.length < 35 &&
+                              (crossings && street.length < 42 &&
                                street.length < street.stop[0] + street.stop[1] + waitingRoom);
         const std::uint32_t a = root(street.node[0]);
         const std::uint32_t b = root(street.node[1]);

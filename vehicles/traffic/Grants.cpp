@@ -296,7 +296,7 @@ bool Traffic::State::roomBehind(const Vehicle& v, std::uint32_t index, double gr
                 continue;
             }
             // It comes to rest no sooner than this, unless it brakes harder than anybody likes to.
-            const double rest = rear + u.speed * u.speed / (2 * 4.0);
+            const double rest = rear + u.speed * u.speed / (2 * 3.0);
             return rest >= groupEnd + needed;
         }
     }

@@ -8,8 +8,9 @@ namespace vehicles {
 
 namespace {
 
-constexpr double placingGap = 3.0;  // metres between vehicles at the start: enough that all can move off
-constexpr int randomTries = 24;     // random places tried before the streets are searched in order
+constexpr double placingGap = 3.0;   // metres between vehicles at the start: enough that all can move off
+constexpr double arrivalGap = 30.0;  // metres free behind a vehicle that comes in later
+constexpr int randomTries = 24;      // random places tried before the streets are searched in order
 
 struct Spot {
     std::uint32_t way;
@@ -40,6 +41,7 @@ bool Traffic::State::tryPlace(std::uint32_t kind, std::uint32_t w, double s) {
         if (blocked(shared.other, from, to)) return false;
     }
     Vehicle v;
+    v.id = nextId++;
     v.kind = kind;
     v.length = k.length;
     v.front = s;
@@ -55,8 +57,62 @@ bool Traffic::State::tryPlace(std::uint32_t kind, std::uint32_t w, double s) {
     return true;
 }
 
+/// A vehicle that has stood for minutes in front of a crossing that will not clear leaves, and another of its
+/// kind comes in at a free place elsewhere: the last resort against knots that random routes tie in networks
+/// full of short lanes.
+void Traffic::State::relocate(std::uint32_t index) {
+    Vehicle& v = vehicles[index];
+    const auto blocked = [&](std::uint32_t lane, double from, double to) {
+        for (std::uint32_t e = listStart[lane]; e < listStart[lane + 1]; ++e) {
+            const Entry& u = entries[e];
+            if (u.vehicle != index && u.front > from && u.front - vehicles[u.vehicle].length < to)
+                return true;
+        }
+        return false;
+    };
+    const auto lanes = static_cast<std::uint32_t>(roads->lanes.size());
+    for (int i = 0; i < randomTries; ++i) {
+        const std::uint32_t w = relocation.below(lanes);
+        const Way& way = net.ways[w];
+        const double s = relocation.unit() * way.length;
+        const double rear = s - v.length;
+        if (way.tram != kinds[v.kind].tram || rear < 0.5 || s > way.length - 0.5) continue;
+        const bool onZone = std::any_of(way.zones.begin(), way.zones.end(), [&](const Way::ZoneSide& zone) {
+            return zone.begin < s + 0.5 && zone.end > rear - 0.5;
+        });
+        // Room for whoever comes from behind to brake without haste.
+        bool taken = onZone || blocked(w, rear - arrivalGap, s + 2 * placingGap);
+        for (const std::uint32_t before : way.previous) {
+            taken = taken ||
+                    (rear < arrivalGap && blocked(before, net.ways[before].length - arrivalGap + rear, 1e9));
+        }
+        for (const Way::Shared& shared : way.shared) {
+            const double from = shared.otherBegin + (rear - arrivalGap - shared.begin) * shared.scale;
+            taken = taken || blocked(shared.other, from,
+                                     shared.otherBegin + (s + 2 * placingGap - shared.begin) * shared.scale);
+        }
+        if (taken) continue;
+        for (const ZoneHold& hold : v.holds) --zones[hold.zone].holders[hold.side];
+        Vehicle fresh;
+        fresh.id = nextId++;
+        fresh.kind = v.kind;
+        fresh.length = v.length;
+        fresh.front = s;
+        fresh.path = {w};
+        fresh.starts = {0, way.length};
+        fresh.granted = s;
+        fresh.random = v.random;
+        fresh.temper = v.temper;
+        v = std::move(fresh);
+        findNextStop(v);
+        listVehicles();
+        return;
+    }
+}
+
 void Traffic::State::place() {
     placed.assign(net.ways.size(), {});
+    relocation.state = options.seed ^ 0x6c656176696e67ULL;
     SeededRandom random{options.seed ^ 0x7472616666696321ULL};
     random.next();
     for (const bool trams : {false, true}) {

@@ -61,10 +61,10 @@ void Traffic::State::updatePoses() {
         const Vehicle& v = vehicles[i];
         const VehicleKind& kind = kinds[v.kind];
         VehiclePose& pose = poses[i];
-        if (first) {
-            pose.id = i;
+        if (first || pose.id != v.id) {
+            pose.id = v.id;
             pose.model = v.kind;
-            pose.paint = paintOf(kind, options.seed * 31 + i);
+            pose.paint = paintOf(kind, options.seed * 31 + v.id);
         }
         const auto at = [&](double odometer) {
             std::size_t k = v.current;

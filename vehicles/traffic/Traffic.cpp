@@ -13,9 +13,11 @@ namespace vehicles {
 
 namespace {
 
-constexpr double longestSubstep = 0.125;   // seconds; a driver's reaction is several times this
-constexpr double stopLineSetback = 0.4;    // metres before a stop where drivers come to rest
-constexpr std::uint64_t changeEvery = 12;  // substeps between two thoughts of changing lanes
+constexpr double longestSubstep = 0.125;     // seconds; a driver's reaction is several times this
+constexpr double stopLineSetback = 0.4;      // metres before a stop where drivers come to rest
+constexpr double longestStand = 150;         // seconds; longer than any cycle of signals
+constexpr std::uint64_t relocateEvery = 64;  // substeps between two looks for knots
+constexpr std::uint64_t changeEvery = 12;    // substeps between two thoughts of changing lanes
 
 std::vector<VehicleKind> checked(std::vector<VehicleKind> kinds, const TrafficOptions& options) {
     if (kinds.empty())
@@ -148,6 +150,12 @@ void Traffic::State::stepOnce(double dt) {
         phase[j] = k;
     }
     listVehicles();
+    if (substeps % relocateEvery == relocateEvery - 1) {
+        for (std::uint32_t i = 0; i < vehicles.size(); ++i) {
+            const Vehicle& v = vehicles[i];
+            if (v.stood > longestStand && v.refusal != Refusal::none && v.nextStop - v.front < 3) relocate(i);
+        }
+    }
     bool changed = false;
     for (std::uint32_t i = 0; i < vehicles.size(); ++i) {
         if ((i + substeps) % changeEvery == 0) changed = changeLanes(i) || changed;
@@ -209,6 +217,7 @@ std::uint64_t Traffic::stateHash() const {
     mix(state_->steps);
     mixReal(state_->time);
     for (const Vehicle& v : state_->vehicles) {
+        mix(v.id);
         mix(v.kind);
         mixReal(v.front);
         mixReal(v.speed);

@@ -41,7 +41,8 @@ enum class SignalColour : std::uint8_t { red, amber, green };
 
 /// Vehicles on a road network: car following (intelligent driver model), lane changes, signals, right of way, routes
 /// drawn at random. Vehicles' boxes (length x width of their kind around their pose) do not overlap, whatever the network: where ways
-/// come too close, one waits. Cost of a step: linear in the vehicles, some 0.2-1 us each. The same network, kinds, options and number of steps give the same poses, bit for bit.
+/// come too close, one waits. A vehicle that has stood for 150 s before a crossing that will not clear leaves, and one with a
+/// new id comes in elsewhere (in its slot of `poses`). Cost of a step: linear in the vehicles, some 0.2-1 us each. The same network, kinds, options and number of steps give the same poses, bit for bit.
 class Traffic {
   public:
     /// Keeps a reference to the network. Throws std::invalid_argument for a step that is not finite and positive or an empty list

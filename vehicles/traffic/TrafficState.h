@@ -30,6 +30,7 @@ enum class Refusal : std::uint8_t { none, signal, taken, noRoom, claimed, yields
 /// One vehicle. All places along its way are odometer readings: metres driven by its front since it was
 /// placed, so a way, a zone and a stop line are intervals and points of one axis.
 struct Vehicle {
+    std::uint32_t id = 0;
     std::uint32_t kind = 0;
     double front = 0;
     double speed = 0;
@@ -76,6 +77,7 @@ struct Traffic::State {
 
     // Placement.cpp
     void place();
+    void relocate(std::uint32_t index);
     bool tryPlace(std::uint32_t kind, std::uint32_t way, double s);
 
     // Traffic.cpp
@@ -111,6 +113,8 @@ struct Traffic::State {
     WayNetwork net;
     std::vector<Vehicle> vehicles;
     std::vector<VehiclePose> poses;
+    std::uint32_t nextId = 0;
+    SeededRandom relocation;  ///< where vehicles that leave for good come back
     std::uint64_t steps = 0;
     std::uint64_t substeps = 0;
     double time = 0;

@@ -75,7 +75,8 @@ int countOverlaps(const Traffic& traffic, const std::vector<VehicleKind>& kinds,
     std::map<std::pair<long, long>, std::vector<std::uint32_t>> cells;
     const double cell = 30;
     int count = 0;
-    for (const VehiclePose& pose : traffic.poses()) {
+    for (std::uint32_t k = 0; k < traffic.size(); ++k) {
+        const VehiclePose& pose = traffic.poses()[k];
         const long x = std::lround(pose.position.x / cell);
         const long y = std::lround(pose.position.y / cell);
         const Box box = boxOf(pose, kinds[pose.model]);
@@ -97,7 +98,7 @@ int countOverlaps(const Traffic& traffic, const std::vector<VehicleKind>& kinds,
                 }
             }
         }
-        cells[{x, y}].push_back(pose.id);
+        cells[{x, y}].push_back(k);
     }
     return count;
 }
@@ -106,6 +107,7 @@ struct Drive {
     double metres = 0;        ///< all vehicles together
     double longestStand = 0;  ///< seconds that any vehicle stood at a stretch
     int standingAtEnd = 0;    ///< vehicles that have not moved for 150 s: longer than any cycle of signals
+    int replaced = 0;         ///< vehicles that left a knot for good
     double hardest = 0;       ///< m/s^2
 };
 
@@ -130,6 +132,12 @@ Drive drive(const city::RoadNetwork& roads, const TrafficOptions& options, doubl
                 ADD_FAILURE() << "not finite: vehicle " << k;
                 return result;
             }
+            if (p.id != before[k].id) {
+                ++result.replaced;
+                before[k] = p;
+                stood[k] = 0;
+                continue;
+            }
             const double moved = glm::distance(p.position, before[k].position);
             // A pose never jumps: lane changes and curves included.
             EXPECT_LE(moved, 1.25 * std::max(p.speed, before[k].speed) * options.step +
@@ -150,10 +158,10 @@ Drive drive(const city::RoadNetwork& roads, const TrafficOptions& options, doubl
     for (double s : stood) result.standingAtEnd += s > 150 ? 1 : 0;
     std::printf(
         "%zu vehicles, %.0f s: mean speed %.2f m/s, longest stand %.0f s, stuck %d, hardest braking %.1f "
-        "m/s2\n",
+        "m/s2, replaced %d\n",
         traffic.size(), seconds,
         result.metres / static_cast<double>(std::max<std::size_t>(1, traffic.size())) / seconds,
-        result.longestStand, result.standingAtEnd, result.hardest);
+        result.longestStand, result.standingAtEnd, result.hardest, result.replaced);
     return result;
 }
 
