@@ -6,19 +6,11 @@
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/DriveSettings.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/render/SceneRenderer.h"
 
 namespace app {
-
-/// What a drive can be asked to change while it runs.
-struct DriveSettings {
-    ReflectionMethod method = ReflectionMethod::mem;
-    MemVariant mem = MemVariant::ours;
-    Quality quality = Quality::medium;
-    std::uint32_t cars = 60;
-    double hour = 15;
-};
 
 /// What one frame took and did.
 struct FrameStats {

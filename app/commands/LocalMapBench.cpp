@@ -53,14 +53,16 @@ std::vector<Place> choosePlaces(const city::CityModel& city, const LocalMapBench
         const glm::vec3 a = lane.centreLine[segment], b = lane.centreLine[segment + 1];
         const auto along = static_cast<float>(static_cast<double>(random() >> 11) * 0x1p-53);
         const glm::vec3 d = b - a;
-        places.push_back({glm::dvec3(a + along * d + glm::vec3(0, 0, options.centreHeight)), d / std::max(glm::length(d), 1e-6f)});
+        places.push_back({glm::dvec3(a + along * d + glm::vec3(0, 0, options.centreHeight)),
+                          d / std::max(glm::length(d), 1e-6f)});
     }
     return places;
 }
 
 class MethodRun {
   public:
-    MethodRun(std::string name, const ReflectionSettings& settings) : name_(std::move(name)), settings_(settings) {}
+    MethodRun(std::string name, const ReflectionSettings& settings)
+        : name_(std::move(name)), settings_(settings) {}
 
     const std::string& name() const { return name_; }
 
@@ -70,7 +72,8 @@ class MethodRun {
         request.streetDirection = place.direction;
         const std::vector<reflection::Candidate> candidates =
             request.method == reflection::LocalMapMethod::mem
-                ? reflection::selectCandidates(prepared.maps, place.centre, *prepared.tracer, candidateCount(settings_))
+                ? reflection::selectCandidates(prepared.maps, place.centre, *prepared.tracer,
+                                               candidateCount(settings_))
                 : reflection::selectNearestTwo(prepared.maps, place.centre);
         request.candidates = candidates;
         map_.resize(faceSize);
@@ -105,12 +108,15 @@ double squaredError(const Picture& a, const Picture& b) {
     return sum / static_cast<double>(a.size());
 }
 
-double decibels(double squared) { return -10 * std::log10(squared); }
+double decibels(double squared) {
+    return -10 * std::log10(squared);
+}
 
 }  // namespace
 
 std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const PreparedReflections& prepared,
-                                          reflection::SceneDrawer& drawer, const LocalMapBenchOptions& options) {
+                                          reflection::SceneDrawer& drawer,
+                                          const LocalMapBenchOptions& options) {
     const int n = options.faceSize;
     std::vector<MethodRun> methods;
     const auto add = [&](const char* name, ReflectionMethod method, MemVariant variant, Quality quality) {
@@ -127,7 +133,8 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     for (const city::Chunk& chunk : city.chunks) triangles.add(chunk.mesh);
     for (const city::Placement& placement : city.placements)
         if (!city.prototypes[placement.prototype].levels.empty())
-            triangles.add(city.prototypes[placement.prototype].levels.front().mesh, placement.worldFromPrototype);
+            triangles.add(city.prototypes[placement.prototype].levels.front().mesh,
+                          placement.worldFromPrototype);
     triangles.commit();
 
     const std::vector<Place> places = choosePlaces(city, options);
@@ -232,7 +239,8 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     embree.method = "embree";
     embree.time = timingOf(embreeTimes);
     embree.ratioToRerender = timingOf(embreeRatios).median;
-    embree.rays = static_cast<std::uint64_t>(6) * static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(n);
+    embree.rays =
+        static_cast<std::uint64_t>(6) * static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(n);
     rows.push_back(embree);
     return rows;
 }

@@ -11,28 +11,30 @@
 namespace app {
 
 struct LocalMapBenchOptions {
-    int faceSize = 128;        ///< texels of the local maps
-    int places = 12;           ///< positions along the lanes, chosen by the seed
-    int repeats = 5;           ///< timed builds at each place
+    int faceSize = 128;  ///< texels of the local maps
+    int places = 12;     ///< positions along the lanes, chosen by the seed
+    int repeats = 5;     ///< timed builds at each place
     std::uint64_t seed = 1;
-    float centreHeight = 0.8f; ///< of the maps above the road, metres
+    float centreHeight = 0.8f;  ///< of the maps above the road, metres
     Lighting lighting;
 };
 
 struct LocalMapRow {
     std::string method;
-    Timing time;               ///< one map
+    Timing time;                 ///< one map
     double ratioToRerender = 0;  ///< median of time / re-rendering's at the same place in the same round
-    double psnr = 0;           ///< dB, tone mapped, against re-rendering at the same size; over all places' texels
-    double psnrWorst = 0;      ///< of the worst place
+    double psnr = 0;  ///< dB, tone mapped, against re-rendering at the same size; over all places' texels
+    double psnrWorst = 0;         ///< of the worst place
     double psnrSupersampled = 0;  ///< against re-rendering with 4x4 samples a texel
-    double flip = 0;           ///< mean FLIP over the faces
-    std::uint64_t rays = 0;    ///< a map, mean
+    double flip = 0;              ///< mean FLIP over the faces
+    std::uint64_t rays = 0;       ///< a map, mean
 };
 
-/// One local map of a stopped car: every method against re-rendering its six faces, interleaved place by place, all on the same
-/// threads; beside it an exact trace of the same texels by Embree. Needs a GL context; `drawer` prepared without vehicles.
+/// One local map of a stopped car: every method against re-rendering its six faces, interleaved place by
+/// place, all on the same threads; beside it an exact trace of the same texels by Embree. Needs a GL context;
+/// `drawer` prepared without vehicles.
 std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const PreparedReflections& prepared,
-                                          reflection::SceneDrawer& drawer, const LocalMapBenchOptions& options);
+                                          reflection::SceneDrawer& drawer,
+                                          const LocalMapBenchOptions& options);
 
 }  // namespace app

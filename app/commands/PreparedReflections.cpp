@@ -31,15 +31,23 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
     return z ^ (z >> 31);
 }
 
-std::uint64_t mix(std::uint64_t hash, float value) { return mix(hash, std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+std::uint64_t mix(std::uint64_t hash, float value) {
+    return mix(hash, std::uint64_t{std::bit_cast<std::uint32_t>(value)});
+}
 
-std::uint64_t mix(std::uint64_t hash, const glm::vec3& v) { return mix(mix(mix(hash, v.x), v.y), v.z); }
+std::uint64_t mix(std::uint64_t hash, const glm::vec3& v) {
+    return mix(mix(mix(hash, v.x), v.y), v.z);
+}
 
-std::uint64_t contentHash(const city::CityModel& city, const Lighting& light, const PreparationOptions& options) {
+std::uint64_t contentHash(const city::CityModel& city, const Lighting& light,
+                          const PreparationOptions& options) {
     std::uint64_t hash = mix(mix(std::uint64_t{0}, bakeVersion), city.contentHash());
-    for (const glm::vec3& v : {light.sunDirection, light.sunIrradiance, light.skyIrradiance, light.groundIrradiance}) hash = mix(hash, v);
+    for (const glm::vec3& v :
+         {light.sunDirection, light.sunIrradiance, light.skyIrradiance, light.groundIrradiance})
+        hash = mix(hash, v);
     hash = mix(mix(hash, light.turbidity), std::uint64_t{light.lampsLit});
-    hash = mix(mix(hash, static_cast<std::uint64_t>(options.faceSize)), static_cast<std::uint64_t>(options.supersampling));
+    hash = mix(mix(hash, static_cast<std::uint64_t>(options.faceSize)),
+               static_cast<std::uint64_t>(options.supersampling));
     hash = mix(mix(mix(hash, options.cell), options.placement.coverage), options.placement.spacing);
     return hash;
 }
@@ -47,7 +55,8 @@ std::uint64_t contentHash(const city::CityModel& city, const Lighting& light, co
 /// A city's name as part of a file name.
 std::string fileNameOf(const std::string& name) {
     std::string safe;
-    for (char c : name) safe += (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_') ? c : '_';
+    for (char c : name)
+        safe += (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_') ? c : '_';
     return safe.empty() ? "city" : safe;
 }
 
@@ -73,13 +82,15 @@ std::vector<glm::vec3> drivingPositions(const city::CityModel& city, float step)
 
 std::filesystem::path cacheFolder() {
     if (const char* own = std::getenv("MIRRORSTREET_CACHE"); own && *own) return own;
-    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return std::filesystem::path(xdg) / "mirrorstreet";
-    if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "mirrorstreet";
+    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg)
+        return std::filesystem::path(xdg) / "mirrorstreet";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache" / "mirrorstreet";
     return std::filesystem::temp_directory_path() / "mirrorstreet-cache";
 }
 
-PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting, reflection::SceneDrawer& drawer,
-                                       const PreparationOptions& options) {
+PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting,
+                                       reflection::SceneDrawer& drawer, const PreparationOptions& options) {
     PreparedReflections prepared;
     prepared.field = std::make_unique<city::Heightfield>(city::cityHeightfield(city, options.cell));
     prepared.tracer = std::make_unique<reflection::GridTracer>(*prepared.field);
@@ -113,8 +124,9 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
         shown = done;
         return !interrupted();
     };
-    reflection::BakeResult baked = reflection::bakeReferenceMaps(drawer, plan->positions, options.useCache ? &store : nullptr,
-                                                                 {options.faceSize, options.supersampling}, carryOn);
+    reflection::BakeResult baked =
+        reflection::bakeReferenceMaps(drawer, plan->positions, options.useCache ? &store : nullptr,
+                                      {options.faceSize, options.supersampling}, carryOn);
     for (const std::string& damage : baked.damaged) spdlog::warn("{}; it was rebuilt", damage);
     prepared.maps = std::move(baked.maps);
     prepared.loaded = baked.loaded;

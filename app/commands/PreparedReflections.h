@@ -16,12 +16,12 @@
 namespace app {
 
 struct PreparationOptions {
-    float cell = 1;                  ///< heightfield cell, metres
-    int faceSize = 256;              ///< of the reference maps, texels
+    float cell = 1;      ///< heightfield cell, metres
+    int faceSize = 256;  ///< of the reference maps, texels
     int supersampling = 2;
     reflection::PlacementOptions placement;
     bool useCache = true;
-    std::filesystem::path cache;     ///< empty: the user's cache folder
+    std::filesystem::path cache;  ///< empty: the user's cache folder
     bool quiet = false;
 };
 
@@ -30,22 +30,23 @@ struct PreparedReflections {
     std::unique_ptr<city::Heightfield> field;
     std::unique_ptr<reflection::GridTracer> tracer;
     std::vector<reflection::PackedReferenceMap> maps;
-    double coverage = 0;         ///< share of the surface visible from driving positions that some map sees
+    double coverage = 0;  ///< share of the surface visible from driving positions that some map sees
     std::size_t loaded = 0;
     std::size_t baked = 0;
-    bool complete = true;        ///< false: interrupted; finished maps are in the cache
+    bool complete = true;          ///< false: interrupted; finished maps are in the cache
     std::filesystem::path folder;  ///< of the cache; empty when none is used
 };
 
 /// Points along all car and tram lanes, `step` metres apart, on the road.
 std::vector<glm::vec3> drivingPositions(const city::CityModel& city, float step);
 
-/// Folder in which a user's caches belong: $MIRRORSTREET_CACHE, else $XDG_CACHE_HOME/mirrorstreet, else ~/.cache/mirrorstreet.
+/// Folder in which a user's caches belong: $MIRRORSTREET_CACHE, else $XDG_CACHE_HOME/mirrorstreet, else
+/// ~/.cache/mirrorstreet.
 std::filesystem::path cacheFolder();
 
-/// Places and renders the city's reference maps, or takes them from the cache. `drawer` must be prepared with the lighting and no vehicles.
-/// Says on stderr which damaged cache entries it rebuilt.
-PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting, reflection::SceneDrawer& drawer,
-                                       const PreparationOptions& options);
+/// Places and renders the city's reference maps, or takes them from the cache. `drawer` must be prepared with
+/// the lighting and no vehicles. Says on stderr which damaged cache entries it rebuilt.
+PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting,
+                                       reflection::SceneDrawer& drawer, const PreparationOptions& options);
 
 }  // namespace app

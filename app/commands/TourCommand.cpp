@@ -1,17 +1,9 @@
-#include <cstdlib>
-
 #include "app/commands/Commands.h"
 #include "app/commands/OffscreenTour.h"
+#include "app/commands/WindowTour.h"
+#include "app/display/Window.h"
 
 namespace app {
-
-namespace {
-
-int run(const Options& options) {
-    return runOffscreenTour(options);
-}
-
-}  // namespace
 
 Command tourCommand() {
     return {.name = "tour",
@@ -19,7 +11,10 @@ Command tourCommand() {
             .groups = cityOptions | trafficOptions | reflectionOptions | pictureOptions | outOptions |
                       jsonOptions | durationOptions | displayOptions,
             .benches = {},
-            .run = run};
+            .run = [](const Options& options) {
+                return options.offscreen || !Window::possible() ? runOffscreenTour(options)
+                                                                : runWindowTour(options);
+            }};
 }
 
 }  // namespace app

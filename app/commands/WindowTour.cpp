@@ -1,0 +1,234 @@
+#include "app/commands/WindowTour.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/trigonometric.hpp>
+#include <iostream>
+#include <thread>
+#include <vector>
+
+#include "app/commands/Drive.h"
+#include "app/commands/TourReport.h"
+#include "app/display/Window.h"
+#include "app/frame/CameraRig.h"
+#include "app/frame/ShotPlan.h"
+#include "app/panel/Controls.h"
+#include "app/panel/MapView.h"
+#include "app/panel/Panel.h"
+#include "app/render/Readback.h"
+#include "app/report/Picture.h"
+#include "app/report/Progress.h"
+#include "app/report/Timing.h"
+
+namespace app {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t graphLength = 180;  // frames
+constexpr double longestStep = 0.1;       // seconds; a slow machine drives slowly rather than in jumps
+
+CameraChoice choiceOf(const std::optional<CameraMode>& mode) {
+    if (!mode) return CameraChoice::shots;
+    return *mode == CameraMode::tour     ? CameraChoice::tour
+           : *mode == CameraMode::follow ? CameraChoice::follow
+                                         : CameraChoice::fly;
+}
+
+/// The first name of the form screenshot_NN.png that is free in the folder.
+std::filesystem::path freeName(const std::filesystem::path& folder) {
+    for (int n = 1;; ++n) {
+        const std::string digits = std::to_string(n);
+        std::filesystem::path file =
+            folder / ("screenshot_" + std::string(digits.size() < 2 ? 1 : 0, '0') + digits + ".png");
+        if (!std::filesystem::exists(file)) return file;
+    }
+}
+
+/// Everything between the window's events and its next picture.
+class WindowTour {
+  public:
+    WindowTour(const Options& options, Window& window, const Scene& scene)
+        : options_(options),
+          window_(window),
+          scene_(scene),
+          drive_(scene, options),
+          camera_(scene.city.tour, scene.city.bounds),
+          shots_(std::nullopt, scene.kinds),
+          panel_(window),
+          report_(options, window.renderer()) {
+        choices_.settings = drive_.settings();
+        choices_.camera = choiceOf(options.camera);
+        if (options.camera) camera_.setMode(*options.camera, drive_.traffic().poses());
+        watch_.lap();
+    }
+
+    void frame();
+    const TourReport& report() const { return report_; }
+
+  private:
+    void obey(const ControlResult& controls);
+    void moveCamera(double seconds, const CameraInput& input);
+    PanelNews news();
+    void takeScreenshot();
+
+    Options options_;
+    Window& window_;
+    const Scene& scene_;
+    Drive drive_;
+    CameraRig camera_;
+    ShotPlan shots_;
+    Panel panel_;
+    MapView mapView_;
+    Controls controls_;
+    PanelChoices choices_;
+    CameraChoice cameraNow_ = CameraChoice::shots;
+    TourReport report_;
+    FrameStats stats_;
+    std::vector<float> frameMs_;
+    std::vector<MapLine> mesh_;
+    bool looking_ = false;
+    double time_ = 0;
+    Stopwatch watch_;
+};
+
+void WindowTour::obey(const ControlResult& controls) {
+    const ControlActions& actions = controls.actions;
+    if (actions.quit) window_.requestClose();
+    if (actions.pause) choices_.paused = !choices_.paused;
+    if (actions.help) choices_.showHelp = !choices_.showHelp;
+    if (actions.panel) choices_.showPanel = !choices_.showPanel;
+    if (actions.nextCamera)
+        choices_.camera = static_cast<CameraChoice>((static_cast<int>(choices_.camera) + 1) % 4);
+    if (actions.nextMethod) {
+        const auto count = static_cast<int>(reflectionMethodNames.size());
+        choices_.settings.method =
+            static_cast<ReflectionMethod>((static_cast<int>(choices_.settings.method) + 1) % count);
+    }
+    if (controls.looking != looking_) {
+        looking_ = controls.looking;
+        window_.captureCursor(looking_);
+    }
+    if (choices_.settings != drive_.settings()) {
+        window_.setTitle("mirrorstreet: preparing ...");
+        drive_.change(choices_.settings);
+        window_.setTitle("mirrorstreet");
+        watch_.lap();
+    }
+}
+
+void WindowTour::moveCamera(double seconds, const CameraInput& input) {
+    const auto vehicles = drive_.traffic().poses();
+    // Flying or turning by hand ends the shots where they are.
+    if (choices_.camera == CameraChoice::shots && input.look != glm::dvec2(0)) {
+        choices_.camera = camera_.mode() == CameraMode::follow ? CameraChoice::follow : CameraChoice::fly;
+        cameraNow_ = camera_.mode() == CameraMode::follow ? CameraChoice::follow : cameraNow_;
+    }
+    if (choices_.camera != cameraNow_) {
+        cameraNow_ = choices_.camera;
+        if (cameraNow_ == CameraChoice::tour) camera_.setMode(CameraMode::tour, vehicles);
+        if (cameraNow_ == CameraChoice::follow) camera_.setMode(CameraMode::follow, vehicles);
+        if (cameraNow_ == CameraChoice::fly) camera_.setMode(CameraMode::fly, vehicles);
+    }
+    if (choices_.nextVehicle != 0) {
+        if (camera_.mode() != CameraMode::follow) camera_.setMode(CameraMode::follow, vehicles);
+        camera_.followNext(vehicles, choices_.nextVehicle);
+        choices_.camera = cameraNow_ = CameraChoice::follow;
+    }
+    if (cameraNow_ == CameraChoice::shots) shots_.direct(time_, vehicles, camera_);
+    camera_.update(seconds, vehicles, input);
+}
+
+PanelNews WindowTour::news() {
+    PanelNews news;
+    news.renderer = window_.renderer();
+    news.frameMs = frameMs_;
+    news.reflections = stats_.reflections;
+    news.drawn = stats_.drawn;
+    news.vehicles = drive_.traffic().size();
+    if (camera_.mode() != CameraMode::follow) return news;
+    const std::vector<vehicles::VehiclePose>& vehicles = drive_.frame().vehicles;
+    const auto found = std::find_if(vehicles.begin(), vehicles.end(),
+                                    [&](const auto& v) { return v.id == camera_.followed(); });
+    if (found == vehicles.end()) return news;
+    const vehicles::VehicleModel& model = scene_.models[found->model];
+    news.followed = model.name;
+    const auto index = static_cast<std::size_t>(found - vehicles.begin());
+    const auto& slots = drive_.reflections().slots;
+    if (!choices_.showMap || index >= slots.size() || !slots[index].valid()) return news;
+    news.mapTexture =
+        mapView_.draw(drive_.reflections().textures, slots[index], drive_.frame().lighting.exposure);
+    news.mapFaceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(slots[index].sizeClass)];
+    mesh_.clear();
+    if (choices_.showMesh && drive_.settings().method == ReflectionMethod::mem && drive_.engine() != nullptr)
+        for (int face = 0; face < 6; ++face) {
+            int lattice = 0;
+            const auto quads = drive_.engine()->meshOf(
+                found->position + glm::dvec3(0, 0, 0.55 * model.height), face, news.mapFaceSize, lattice);
+            const auto lines = unfoldedMesh(face, quads, lattice);
+            mesh_.insert(mesh_.end(), lines.begin(), lines.end());
+        }
+    news.mesh = mesh_;
+    return news;
+}
+
+void WindowTour::takeScreenshot() {
+    const std::filesystem::path file = freeName(options_.out);
+    try {
+        Image8 image = readPixels(0, window_.framebufferSize());
+        writePng({image.size.x, image.size.y, std::move(image.rgba)}, file);
+        spdlog::info("screenshot: {}", file.string());
+    } catch (const std::runtime_error& error) {
+        spdlog::warn("no screenshot: {}", error.what());
+    }
+}
+
+void WindowTour::frame() {
+    const ControlResult controls =
+        controls_.update(window_.pollEvents(), panel_.takesMouse() && !looking_, panel_.takesKeys());
+    obey(controls);
+    const double seconds = std::min(watch_.lap() / 1000, longestStep);
+    const glm::ivec2 size = window_.framebufferSize();
+    if (size.x < 1 || size.y < 1) {
+        std::this_thread::sleep_for(50ms);  // minimised
+        return;
+    }
+    if (!choices_.paused) {
+        time_ += seconds;
+        drive_.advance(seconds);
+    }
+    if (controls.actions.nextVehicle != 0) choices_.nextVehicle = controls.actions.nextVehicle;
+    // Paused, the traffic stands; a free or circling camera may still move.
+    const bool moving = !choices_.paused || camera_.mode() != CameraMode::tour;
+    moveCamera(moving ? seconds : 0, controls.camera);
+    const bool screenshot = controls.actions.screenshot || choices_.screenshot;
+
+    const View view = lookAt(camera_.pose().eye, camera_.pose().target, glm::radians(60.0), size);
+    stats_ = drive_.draw(view, 0);
+    report_.add(stats_);
+    if (frameMs_.size() == graphLength) frameMs_.erase(frameMs_.begin());
+    frameMs_.push_back(static_cast<float>(stats_.frameMs));
+    if (screenshot) takeScreenshot();
+    panel_.draw(news(), choices_);
+    window_.present();
+}
+
+}  // namespace
+
+int runWindowTour(const Options& options) {
+    Window window({.title = "mirrorstreet: preparing ...", .size = options.resolution});
+    spdlog::info("drawing in a window on {}; F1 lists the keys", window.renderer());
+    const Scene scene = loadScene(options);
+    WindowTour tour(options, window, scene);
+    window.setTitle("mirrorstreet");
+    const std::optional<std::uint32_t> frames = options.frameCount();
+    while (!window.closeRequested() && !interrupted() && (!frames || tour.report().frames() < *frames))
+        tour.frame();
+    tour.report().finish(interrupted(), std::cout);
+    return exitOk;
+}
+
+}  // namespace app

@@ -1,0 +1,218 @@
+#include "app/panel/Panel.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "app/panel/Controls.h"
+
+namespace app {
+
+namespace {
+
+constexpr float panelWidth = 330;
+
+/// A combo box over the names of an enumeration.
+template <typename Enum, std::size_t count>
+bool combo(const char* label, const std::array<std::string_view, count>& names, Enum& value) {
+    bool changed = false;
+    if (ImGui::BeginCombo(label, std::string(names[static_cast<std::size_t>(value)]).c_str())) {
+        for (std::size_t i = 0; i < count; ++i)
+            if (ImGui::Selectable(std::string(names[i]).c_str(), i == static_cast<std::size_t>(value))) {
+                value = static_cast<Enum>(i);
+                changed = true;
+            }
+        ImGui::EndCombo();
+    }
+    return changed;
+}
+
+constexpr std::array<std::string_view, 4> cameraNames{"shots", "tour", "follow", "fly"};
+
+void row(const char* name, const char* format, double value) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    ImGui::TableNextColumn();
+    ImGui::Text(format, value);
+}
+
+void drawHelp(PanelChoices& choices) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("Keys and mouse", &choices.showHelp,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const KeyHelp& help : keyHelp()) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextColored({1, 0.85f, 0.4f, 1}, "%s", help.key.c_str());
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(help.what.c_str());
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void drawFrameTimes(std::span<const float> frameMs) {
+    if (frameMs.empty()) return;
+    float highest = 0;
+    for (float ms : frameMs) highest = std::max(highest, ms);
+    char overlay[64];
+    std::snprintf(overlay, sizeof overlay, "%.1f ms", static_cast<double>(frameMs.back()));
+    ImGui::PlotLines("##frames", frameMs.data(), static_cast<int>(frameMs.size()), 0, overlay, 0,
+                     1.2f * highest, {ImGui::GetContentRegionAvail().x, 60});
+}
+
+void drawMap(const PanelNews& news, PanelChoices& choices) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({screen.x - 12, screen.y - 12}, ImGuiCond_FirstUseEver, {1, 1});
+    ImGui::SetNextWindowSize({540, 470}, ImGuiCond_FirstUseEver);
+    ImGui::Begin("What am I seeing?", &choices.showMap, ImGuiWindowFlags_NoCollapse);
+    if (news.mapTexture == 0) {
+        ImGui::TextWrapped("%s", news.followed.empty()
+                                     ? "Follow a vehicle (C, Tab) to see its local map."
+                                     : "The followed vehicle has no local map: the method gives it none.");
+        ImGui::End();
+        return;
+    }
+    ImGui::Text("Local map of the followed %s: 6 x %d x %d texels", news.followed.c_str(), news.mapFaceSize,
+                news.mapFaceSize);
+    if (!news.mesh.empty()) ImGui::SameLine();
+    ImGui::Checkbox("mesh", &choices.showMesh);
+    const float width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 size{width, width * static_cast<float>(mapViewFaces.y) / static_cast<float>(mapViewFaces.x)};
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    // OpenGL's first row is the bottom one.
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(news.mapTexture)), size, {0, 1},
+                 {1, 0});
+    if (choices.showMesh) {
+        ImDrawList* lines = ImGui::GetWindowDrawList();
+        for (const MapLine& line : news.mesh)
+            lines->AddLine({corner.x + line.from.x * size.x, corner.y + line.from.y * size.y},
+                           {corner.x + line.to.x * size.x, corner.y + line.to.y * size.y},
+                           IM_COL32(255, 210, 60, 110));
+    }
+    ImGui::End();
+}
+
+}  // namespace
+
+struct Panel::Impl {
+    // Sliders that are costly to obey are obeyed when they are let go.
+    int cars = -1;
+    float hour = -1;
+
+    void drawSettings(const PanelNews& news, PanelChoices& choices);
+    void drawCounters(const PanelNews& news);
+};
+
+void Panel::Impl::drawSettings(const PanelNews& news, PanelChoices& choices) {
+    DriveSettings& settings = choices.settings;
+    combo("reflections", reflectionMethodNames, settings.method);
+    if (settings.method == ReflectionMethod::mem) combo("form of mem", memVariantNames, settings.mem);
+    combo("quality", qualityNames, settings.quality);
+    if (cars < 0) cars = static_cast<int>(settings.cars);
+    ImGui::SliderInt("cars", &cars, 0, 300, "%d", ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemDeactivatedAfterEdit())
+        settings.cars = static_cast<std::uint32_t>(cars);
+    else if (!ImGui::IsItemActive())
+        cars = static_cast<int>(settings.cars);
+    if (hour < 0) hour = static_cast<float>(settings.hour);
+    ImGui::SliderFloat("hour", &hour, 0, 24, "%.1f", ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemDeactivatedAfterEdit())
+        settings.hour = static_cast<double>(hour);
+    else if (!ImGui::IsItemActive())
+        hour = static_cast<float>(settings.hour);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Another light needs other reference maps: this may take a while the first time.");
+
+    combo("camera", cameraNames, choices.camera);
+    if (!news.followed.empty()) {
+        if (ImGui::ArrowButton("before", ImGuiDir_Left)) choices.nextVehicle = -1;
+        ImGui::SameLine();
+        if (ImGui::ArrowButton("next", ImGuiDir_Right)) choices.nextVehicle = 1;
+        ImGui::SameLine();
+        ImGui::Text("following a %s", news.followed.c_str());
+    }
+    ImGui::Checkbox("pause", &choices.paused);
+    ImGui::SameLine();
+    ImGui::Checkbox("what am I seeing?", &choices.showMap);
+    if (ImGui::Button("screenshot")) choices.screenshot = true;
+    ImGui::SameLine();
+    if (ImGui::Button("help (F1)")) choices.showHelp = !choices.showHelp;
+}
+
+void Panel::Impl::drawCounters(const PanelNews& news) {
+    if (!ImGui::BeginTable("counters", 2, ImGuiTableFlags_SizingStretchProp)) return;
+    constexpr double mebi = 1024.0 * 1024.0;
+    row("vehicles", "%.0f", static_cast<double>(news.vehicles));
+    row("  in view", "%.0f", news.reflections.visible);
+    row("local maps rebuilt", "%.0f", news.reflections.rebuilt);
+    row("  still good", "%.0f", news.reflections.fresh);
+    row("  left for later", "%.0f", news.reflections.postponed);
+    row("  rays", "%.0f", static_cast<double>(news.reflections.rays));
+    row("  texels", "%.0f", static_cast<double>(news.reflections.texels));
+    row("reflections, ms", "%.2f", news.reflections.milliseconds);
+    row("local maps, MiB", "%.1f", static_cast<double>(news.reflections.localMapBytes) / mebi);
+    row("reference maps, MiB", "%.1f", static_cast<double>(news.reflections.referenceMapBytes) / mebi);
+    row("triangles drawn", "%.0f", static_cast<double>(news.drawn.triangles));
+    row("draw calls", "%.0f", news.drawn.drawCalls);
+    row("chunks culled", "%.0f", news.drawn.chunksCulled);
+    ImGui::EndTable();
+}
+
+Panel::Panel(Window& window) : impl_(std::make_unique<Impl>()) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file in whatever folder the program was started from
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().WindowRounding = 6;
+    ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Panel::~Panel() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+bool Panel::takesMouse() const {
+    return ImGui::GetIO().WantCaptureMouse;
+}
+bool Panel::takesKeys() const {
+    return ImGui::GetIO().WantTextInput;
+}
+
+void Panel::draw(const PanelNews& news, PanelChoices& choices) {
+    choices.nextVehicle = 0;
+    choices.screenshot = false;
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    if (choices.showPanel) {
+        ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
+        ImGui::SetNextWindowSize({panelWidth, 0}, ImGuiCond_FirstUseEver);
+        ImGui::Begin("mirrorstreet", &choices.showPanel);
+        drawFrameTimes(news.frameMs);
+        impl_->drawSettings(news, choices);
+        ImGui::Separator();
+        impl_->drawCounters(news);
+        ImGui::TextDisabled("%s", news.renderer.c_str());
+        ImGui::End();
+    }
+    if (choices.showMap) drawMap(news, choices);
+    if (choices.showHelp) drawHelp(choices);
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace app

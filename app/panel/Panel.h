@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/display/Window.h"
+#include "app/frame/DriveSettings.h"
+#include "app/frame/ReflectionEngine.h"
+#include "app/panel/MapView.h"
+#include "app/render/SceneRenderer.h"
+
+namespace app {
+
+/// Cameras that the panel offers: shots in turn, and the rig's modes.
+enum class CameraChoice : std::uint8_t { shots, tour, follow, fly };
+
+/// What the panel lets the user choose. Plain data: the panel changes it, the program obeys.
+struct PanelChoices {
+    DriveSettings settings;
+    CameraChoice camera = CameraChoice::shots;
+    bool paused = false;
+    bool showPanel = true;
+    bool showHelp = false;
+    bool showMap = false;
+    bool showMesh = true;
+    int nextVehicle = 0;      ///< asked for in this frame
+    bool screenshot = false;  ///< asked for in this frame
+};
+
+/// What the panel tells.
+struct PanelNews {
+    std::string renderer;
+    std::span<const float> frameMs;  ///< oldest first
+    ReflectionCounters reflections;
+    RenderCounters drawn;
+    std::size_t vehicles = 0;
+    std::string followed;          ///< name of the followed vehicle; empty: none
+    std::uint32_t mapTexture = 0;  ///< from MapView; 0: nothing to show
+    std::span<const MapLine> mesh;
+    int mapFaceSize = 0;  ///< texels
+};
+
+/// The Dear ImGui panel over a window. The window's OpenGL context must be current from construction to
+/// destruction.
+class Panel {
+  public:
+    explicit Panel(Window& window);
+    ~Panel();
+    Panel(const Panel&) = delete;
+    Panel& operator=(const Panel&) = delete;
+
+    bool takesMouse() const;  ///< the pointer is over the panel, or drags something of it
+    bool takesKeys() const;   ///< a field is being typed into
+
+    /// Draws into the bound framebuffer 0 and changes the choices by what was clicked.
+    void draw(const PanelNews& news, PanelChoices& choices);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace app
