@@ -3,7 +3,7 @@
 namespace app {
 
 std::vector<Command> allCommands() {
-    return {infoCommand()};
+    return {tourCommand(), exportCommand(), infoCommand()};
 }
 
 }  // namespace app
