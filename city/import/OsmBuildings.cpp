@@ -28,6 +28,9 @@ constexpr float mainStreetReach = 20;
 constexpr float shopFloorHeight = 4.2f;
 constexpr double leastShopBuilding = 6.5;
 
+/// A part that hangs in the air is drawn only if it is at least as large as a room, square metres.
+constexpr double leastFloating = 6;
+
 /// A canopy's thickness, metres.
 constexpr double canopyThickness = 0.4;
 
@@ -137,7 +140,9 @@ class Planner {
                 guess_.addKnown(candidate->inside, candidate->kind, *candidate->heights.top);
             (part ? parts_ : outlines_).push_back(std::move(*candidate));
         }
+        sortAmbiguous();
         assignParts();
+        rankParts();
         for (const Candidate& outline : outlines_) planOutline(outline);
         for (const Candidate& part : parts_) planPart(part);
         result_.buildings = outlines_.size();
@@ -150,6 +155,56 @@ class Planner {
         const std::string_view amenity = tags.get("amenity");
         return amenity == "cafe" || amenity == "restaurant" || amenity == "bar" || amenity == "pub" ||
                amenity == "fast_food" || amenity == "bank" || amenity == "pharmacy" || amenity == "cinema";
+    }
+
+    /// What is tagged as a building and as a part at once is a part where it lies in a larger building.
+    void sortAmbiguous() {
+        std::vector<Candidate> outlines;
+        for (Candidate& candidate : outlines_) {
+            const bool within =
+                candidate.source->tags.has("building:part") &&
+                !candidate.source->tags.is("building:part", "no") &&
+                std::any_of(outlines_.begin(), outlines_.end(), [&](const Candidate& other) {
+                    return other.ground > 1.1 * candidate.ground && holds(other, candidate.inside);
+                });
+            if (within)
+                parts_.push_back(candidate);
+            else
+                outlines.push_back(candidate);
+        }
+        outlines_ = std::move(outlines);
+    }
+
+    /// Parts of one building often share walls in their lower storeys: the higher of two is drawn in by a
+    /// hair, or they would flicker.
+    void rankParts() {
+        constexpr double hair = 0.02;  // metres
+        constexpr std::size_t mostRanks = 8;
+        for (const Candidate& outline : outlines_) {
+            std::vector<std::size_t> order = outline.parts;
+            std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+                return parts_[a].heights.top.value_or(0) < parts_[b].heights.top.value_or(0);
+            });
+            for (std::size_t rank = 1; rank < order.size(); ++rank) {
+                std::vector<Footprint> smaller;
+                for (const Footprint& polygon : parts_[order[rank]].polygons)
+                    for (Footprint& piece : offset(polygon, -hair * double(std::min(rank, mostRanks))))
+                        smaller.push_back(std::move(piece));
+                if (!smaller.empty()) parts_[order[rank]].polygons = std::move(smaller);
+            }
+        }
+    }
+
+    /// Whether a part that begins above the ground has something below it.
+    bool isBorne(const Candidate& part) const {
+        const double base = part.heights.base.value_or(0);
+        if (base < 1 || !part.outline) return true;
+        const Candidate& outline = outlines_[*part.outline];
+        return std::any_of(outline.parts.begin(), outline.parts.end(), [&](std::size_t p) {
+            const Candidate& other = parts_[p];
+            return &other != &part && other.heights.base.value_or(0) < base && other.heights.top &&
+                   *other.heights.top > base - 1.5 && holds(other, part.inside);
+        });
     }
 
     void assignParts() {
@@ -200,6 +255,11 @@ class Planner {
     }
 
     void planPart(const Candidate& part) {
+        // Crosses and flags whose tower the file lacks.
+        if (part.ground < leastFloating && !isBorne(part)) {
+            ++result_.floating;
+            return;
+        }
         const Candidate& outline = part.outline ? outlines_[*part.outline] : part;
         double top = 0;
         if (!part.heights.top && part.outline && outline.heights.top &&
@@ -266,6 +326,25 @@ class Planner {
                         (roof == RoofShape::dome ? 0.9 : 0.4) * wallAndRoof);
     }
 
+    /// Old houses of some height have a cornice, and a string course above their shops; glass and sheds have
+    /// none.
+    void addLedges(BuildingPlan& planned, BuildingKind kind, std::uint32_t trim) const {
+        const BuildingShape& shape = planned.shape;
+        const bool windows = kind == BuildingKind::block || kind == BuildingKind::civic ||
+                             kind == BuildingKind::office || kind == BuildingKind::church;
+        const Pattern wall = table_[shape.wallMaterial].pattern;
+        if (!windows || wall == Pattern::facadeGlass || wall == Pattern::wall ||
+            shape.eaves - shape.base < 6 || area(shape.footprint) < 60)
+            return;
+        if (shape.roof == RoofShape::flat)
+            planned.ledges.push_back({shape.eaves - 0.45f, shape.eaves + 0.25f, 0.3f, 0.4f, trim});
+        else
+            planned.ledges.push_back({shape.eaves - 0.35f, shape.eaves, 0.25f, 0, trim});
+        const float course = shape.base + shape.groundFloorHeight;
+        if (shape.groundFloorHeight > 0 && course + 2 < shape.eaves)
+            planned.ledges.push_back({course - 0.12f, course + 0.14f, 0.14f, 0, trim});
+    }
+
     void plan(const Candidate& own, const Candidate& outline, const std::vector<Footprint>& polygons,
               double top) {
         const OsmTags& tags = own.source->tags;
@@ -306,6 +385,7 @@ class Planner {
             shape.wallMaterial = facade.wall;
             shape.groundFloorMaterial = facade.groundFloor;
             shape.roofMaterial = facade.roof;
+            addLedges(planned, kind, facade.trim);
             result_.plans.push_back(std::move(planned));
         }
     }

@@ -5,6 +5,7 @@
 #include "city/import/OsmData.h"
 #include "city/import/OsmMaterials.h"
 #include "city/model/BuildingMesh.h"
+#include "city/model/Ledge.h"
 
 namespace city {
 
@@ -12,6 +13,7 @@ namespace city {
 struct BuildingPlan {
     std::int64_t id = 0;
     BuildingShape shape;
+    std::vector<Ledge> ledges;  ///< around the shape's outer ring
 };
 
 struct BuildingPlans {
@@ -23,6 +25,7 @@ struct BuildingPlans {
     std::size_t keptRemainders = 0;    ///< ... and what the parts leave free, too
     std::size_t outside = 0;
     std::size_t underground = 0;
+    std::size_t floating = 0;  ///< small parts high above anything
 };
 
 /// Under the ground: `location=underground`, a negative `layer` or `level`, a `tunnel`.

@@ -1,5 +1,7 @@
 #include "city/import/OsmCity.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -55,6 +57,10 @@ BuiltCounts appendBuildings(const std::vector<BuildingPlan>& plans, ChunkCollect
         counts.degenerate += status == BuildStatus::degenerate;
         if (plan.shape.base > 0.5f && status != BuildStatus::degenerate) appendUnderside(plan.shape, mesh);
         chunks.add(ChunkKind::building, mesh);
+        // What juts out over the pavement is no column of the heightfield.
+        Mesh details;
+        for (const Ledge& ledge : plan.ledges) appendLedge(plan.shape.footprint, ledge, details);
+        chunks.add(ChunkKind::furniture, details);
     }
     return counts;
 }
@@ -84,14 +90,19 @@ CityModel loadOsmCity(const std::filesystem::path& file, const ImportOptions& op
     model.name = file.stem().stem().string();
     model.frame = data.frame;
     ChunkCollector chunks(blockSize);
-    for (Mesh& mesh : buildGround(ground, data.halfSize, palette))
-        chunks.addWhole(ChunkKind::ground, std::move(mesh));
-    for (Mesh& mesh : buildStreetSurfaces(streets.graph, palette.streets))
-        chunks.addWhole(ChunkKind::ground, std::move(mesh));
-    const BuiltCounts built = appendBuildings(buildings.plans, chunks);
+    BuiltCounts built;
+    std::vector<Mesh> groundMeshes;
+    std::vector<Mesh> streetMeshes;
+    tbb::parallel_invoke([&] { streetMeshes = buildStreetSurfaces(streets.graph, palette.streets); },
+                         [&] {
+                             built = appendBuildings(buildings.plans, chunks);
+                             groundMeshes = buildGround(ground, data.halfSize, palette);
+                             model.roads = buildRoadNetwork(streets.graph);
+                         });
+    for (Mesh& mesh : groundMeshes) chunks.addWhole(ChunkKind::ground, std::move(mesh));
+    for (Mesh& mesh : streetMeshes) chunks.addWhole(ChunkKind::ground, std::move(mesh));
     model.chunks = chunks.take();
 
-    model.roads = buildRoadNetwork(streets.graph);
     SignalLayout signals = layOutSignals(model.roads);
     model.signalHeads = std::move(signals.heads);
     const FurnitureCounts furniture =
@@ -122,6 +133,7 @@ CityModel loadOsmCity(const std::filesystem::path& file, const ImportOptions& op
          "outlines of buildings were replaced by their parts; " + std::to_string(buildings.keptRemainders) +
              " keep what the parts leave free.");
     note(model, buildings.underground, "buildings underground were left out.");
+    note(model, buildings.floating, "small parts of buildings with nothing below them were left out.");
     note(model, buildings.outside, "buildings outside the bounds were left out.");
     note(model, built.repaired, "footprints crossed themselves and were mended.");
     note(model, built.degenerate, "footprints have no area or height and were left out.");

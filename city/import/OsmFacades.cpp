@@ -1,6 +1,8 @@
 #include "city/import/OsmFacades.h"
 
 #include <array>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <span>
 
 #include "city/import/OsmValues.h"
@@ -15,8 +17,9 @@ using Colours = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 10> plasterColours{"#e6d6a6", "#d8b980", "#e0c2b0", "#cfcdc6",
                                                           "#e8e4da", "#c4cdb8", "#d8c8a8", "#d6ab8e",
                                                           "#bcc5ca", "#dcc9a0"};
-constexpr std::array<std::string_view, 6> brickColours{"#a85c44", "#94523f", "#b36b4c",
-                                                       "#c39268", "#8b5546", "#b98a66"};
+// The brick picture is reddish itself.
+constexpr std::array<std::string_view, 6> brickColours{"#bcaa9e", "#ad958b", "#cec2ad",
+                                                       "#c4a295", "#b59384", "#c9b39c"};
 constexpr std::array<std::string_view, 7> stoneColours{"#b9b1a5", "#a59e95", "#c8bead", "#94908b",
                                                        "#b59a88", "#d0c8bb", "#a8a49c"};
 constexpr std::array<std::string_view, 4> glassColours{"#a4b4bb", "#93a3a8", "#b2bcbc", "#9aaab5"};
@@ -29,6 +32,15 @@ constexpr std::array<std::string_view, 5> shopColours{"#d8d4cc", "#b9b3a8", "#8d
 glm::vec3 draw(Colours colours, std::uint64_t hash, std::uint32_t number) {
     const auto index = static_cast<std::size_t>(uniform(hash, number) * static_cast<double>(colours.size()));
     return parseColour(colours[index]).value_or(glm::vec3(0.5f));
+}
+
+/// Tags name a colour as one calls it ("red"), not as it is painted: walls are paler and never reflect all
+/// light.
+glm::vec3 asPainted(glm::vec3 named, Pattern pattern) {
+    const float grey = glm::dot(named, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+    glm::vec3 painted = glm::mix(named, glm::vec3(grey), 0.4f);
+    if (pattern == Pattern::facadeBrick) painted /= glm::vec3(0.635f, 0.536f, 0.486f);  // the picture's mean
+    return glm::clamp(painted, 0.03f, 0.75f);
 }
 
 std::string_view either(const OsmTags& tags, const OsmTags& outline, std::string_view key) {
@@ -95,7 +107,10 @@ Facade chooseFacade(const OsmTags& tags, const OsmTags& outline, BuildingKind ki
     std::optional<glm::vec3> colour = parseColour(either(tags, outline, "building:colour"));
     if (!colour) colour = parseColour(either(tags, outline, "building:color"));
     // Mesh makers put one repeat to a bay and a storey; the pattern's size only says how large that is.
-    facade.wall = table.add(pattern, colour.value_or(draw(coloursOf(pattern), hash, 2)), 3);
+    facade.wall =
+        table.add(pattern, colour ? asPainted(*colour, pattern) : draw(coloursOf(pattern), hash, 2), 3);
+    facade.trim =
+        table.add(Pattern::plain, glm::mix(table[facade.wall].tint, glm::vec3(0.6f, 0.58f, 0.55f), 0.6f));
     facade.groundFloor = table.add(Pattern::shopFront, draw(shopColours, hash, 3), 4);
 
     const std::string_view roofMaterial = either(tags, outline, "roof:material");
@@ -105,9 +120,11 @@ Facade chooseFacade(const OsmTags& tags, const OsmTags& outline, BuildingKind ki
     const Pattern roofPattern = metal ? Pattern::metal : tiled ? Pattern::roofTiles : Pattern::roofFlat;
     std::optional<glm::vec3> roofColour = parseColour(either(tags, outline, "roof:colour"));
     if (!roofColour && roofMaterial == "copper") roofColour = parseColour("#6d9a86");
-    facade.roof = table.add(
-        roofPattern,
-        roofColour.value_or(draw(tiled ? Colours(tileColours) : Colours(flatRoofColours), hash, 4)), 2);
+    facade.roof =
+        table.add(roofPattern,
+                  roofColour ? asPainted(*roofColour, roofPattern)
+                             : draw(tiled ? Colours(tileColours) : Colours(flatRoofColours), hash, 4),
+                  2);
     return facade;
 }
 

@@ -11,6 +11,7 @@ struct Facade {
     std::uint32_t wall = 0;
     std::uint32_t groundFloor = 0;
     std::uint32_t roof = 0;
+    std::uint32_t trim = 0;  ///< of ledges
 };
 
 /// What a building looks like: `building:material`, `building:colour`, `roof:material` and `roof:colour`

@@ -130,6 +130,8 @@ TaggedHeights taggedHeights(const OsmTags& tags, BuildingKind kind) {
     if (!heights.base)
         if (const auto level = within(parseNumber(tags.get("building:min_level")), 0, mostLevels))
             heights.base = *level * storey;
+    // A dome on a drum tells only where it begins and how high it is.
+    if (!heights.top && heights.base && heights.roof) heights.top = *heights.base + *heights.roof;
     if (heights.top && heights.base && *heights.base >= *heights.top) heights.base.reset();
     if (heights.top && heights.roof)
         heights.roof = std::min(*heights.roof, *heights.top - heights.base.value_or(0));

@@ -137,6 +137,43 @@ TEST(OsmBuildings, ShopsMakeShopFronts) {
     EXPECT_FLOAT_EQ(result.plans[1].shape.groundFloorHeight, 0);
 }
 
+TEST(OsmBuildings, PartsThatShareWallsDoNotCoincide) {
+    OsmText text;
+    text.bounds(300);
+    text.box(0, 0, 40, 20, {{"building", "yes"}});
+    text.box(0, 0, 40, 20, {{"building:part", "yes"}, {"height", "10"}});
+    text.box(0, 0, 10, 20, {{"building:part", "yes"}, {"height", "30"}});
+    const BuildingPlans result = planOf(text, "coincide.osm");
+    ASSERT_EQ(result.plans.size(), 2u);
+    const auto left = [](const BuildingPlan& plan) {
+        float x = 1e9f;
+        for (const glm::vec2 p : plan.shape.footprint.outer) x = std::min(x, p.x);
+        return x;
+    };
+    EXPECT_GT(left(result.plans[1]) - left(result.plans[0]), 0.01f);
+    EXPECT_LT(left(result.plans[1]) - left(result.plans[0]), 0.2f);
+}
+
+TEST(OsmBuildings, DomeOnItsDrumAndCrossInTheAir) {
+    OsmText text;
+    text.bounds(300);
+    text.box(0, 0, 40, 20, {{"building", "church"}, {"height", "12"}});
+    text.box(0, 0, 40, 20, {{"building:part", "yes"}, {"height", "12"}});
+    text.box(10, 5, 18, 13,
+             {{"building", "church"},
+              {"building:part", "yes"},
+              {"min_height", "12"},
+              {"roof:shape", "dome"},
+              {"roof:height", "5"}});
+    text.box(30, 5, 31, 6, {{"building:part", "yes"}, {"min_height", "37"}, {"height", "41"}});
+    const BuildingPlans result = planOf(text, "dome.osm");
+    EXPECT_EQ(result.floating, 1u);
+    ASSERT_EQ(result.plans.size(), 2u);
+    EXPECT_EQ(result.plans[1].shape.roof, RoofShape::dome);
+    EXPECT_FLOAT_EQ(result.plans[1].shape.ridge, 17);
+    EXPECT_FLOAT_EQ(result.plans[1].shape.base, 12);
+}
+
 TEST(OsmBuildings, RoofHeightIsPartOfTheHeight) {
     OsmText text;
     text.bounds(200);
