@@ -22,19 +22,20 @@ struct RankMeasures {
     float pavement;  ///< metres
     float speed;     ///< metres per second
 };
-// Avenue 37 m from house to house, streets 14.5-17 m.
+// Avenue 36 m from house to house, streets 14 to 24 m: whole metres from axis to houses, so that the fronts
+// that run along the map's axes lie on the borders of one-metre heightfield cells.
 constexpr RankMeasures measures(StreetRank rank) {
     switch (rank) {
         case StreetRank::avenue:
-            return {2, 8, 8, 13.9f};
+            return {2, 8, 7.5f, 13.9f};
         case StreetRank::tramStreet:
-            return {1, 8, 4.5f, 11.1f};
+            return {1, 8, 4.75f, 11.1f};
         case StreetRank::street:
-            return {1, 0, 5, 8.33f};
+            return {1, 0, 4.75f, 8.33f};
         case StreetRank::lane:
-            return {1, 0, 4, 8.33f};
+            return {1, 0, 3.75f, 8.33f};
     }
-    return {1, 0, 4, 8.33f};
+    return {1, 0, 3.75f, 8.33f};
 }
 
 /// The grid of crossings: columns 0..columns, rows -rows..rows.

@@ -46,7 +46,8 @@ Houses planHouses(const Palette& palette, const Random& seed) {
     for (int j = -1; j < L::lines; ++j) {
         for (int i = -1; i < L::lines; ++i) {
             const bool square = i == 1 && j == 1;
-            Random random = seed.fork(static_cast<std::uint64_t>((j + 1) * 8 + i + 1));
+            Random random =
+                seed.fork(8 * static_cast<std::uint64_t>(j + 1) + static_cast<std::uint64_t>(i + 1));
             const auto low = [](int k) { return k < 0 ? -L::half + 2 : L::line(k) + L::houseLine; };
             const auto high = [](int k) {
                 return k + 1 >= L::lines ? L::half - 2 : L::line(k + 1) - L::houseLine;
@@ -122,11 +123,12 @@ void addHouses(Houses houses, const Palette& palette, const Random& seed, ChunkC
         throw std::logic_error("paper city: the houses take " + std::to_string(used) + " triangles");
     }
     // Chimneys on houses in turn, at different places along the ridge; the odd rest as roof lights.
-    for (std::size_t k = 0; used + chimneyTriangles <= buildingTriangles; ++k) {
+    for (std::size_t k = 0; count > 0 && used + chimneyTriangles <= buildingTriangles; ++k) {
+        const std::size_t round = k / count;
         const PlannedHouse& house = houses.planned[(k * 7) % count];
         const glm::vec2 a = house.lot.corners[0].position, b = house.lot.corners[1].position;
         const glm::vec2 along = -glm::vec2(outward(a, b).y, -outward(a, b).x);
-        const float shift = (0.3f - 0.15f * static_cast<float>(k / count)) * house.lot.length(0);
+        const float shift = (0.3f - 0.15f * static_cast<float>(round)) * house.lot.length(0);
         const float eaves = house.design.eaves();
         const bool tent = house.design.roof == HouseRoof::tent;
         const float rise =

@@ -133,7 +133,7 @@ PatternImage PatternCanvas::image() const {
     image.size = size_;
     image.rgba.reserve(texels_.size() * 4);
     const auto byte = [](float v) {
-        return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255 + 0.5f);
+        return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255));
     };
     for (std::size_t i = 0; i < texels_.size(); ++i) {
         const glm::vec3& c = texels_[i];
