@@ -149,6 +149,19 @@ Region Region::grown(double distance) const {
     return g == nullptr ? *this : Region(Geometry::keep(g));
 }
 
+Region Region::widened(double distance) const {
+    if (empty()) return *this;
+    GEOSGeometry* g = GEOSBufferWithStyle_r(handle(), geometry_->value, distance, 1, GEOSBUF_CAP_FLAT,
+                                            GEOSBUF_JOIN_MITRE, 2);
+    return g == nullptr ? *this : Region(Geometry::keep(g));
+}
+
+Region Region::simplified(double tolerance) const {
+    if (empty()) return *this;
+    GEOSGeometry* g = GEOSTopologyPreserveSimplify_r(handle(), geometry_->value, tolerance);
+    return g == nullptr ? *this : Region(Geometry::keep(g));
+}
+
 Region Region::clipped(double minX, double minY, double maxX, double maxY) const {
     if (empty()) return *this;
     GEOSGeometry* g = GEOSClipByRect_r(handle(), geometry_->value, minX, minY, maxX, maxY);

@@ -26,6 +26,10 @@ class Region {
     Region within(const Region& other) const;
     /// Grown by a distance (shrunk by a negative one), with round corners.
     Region grown(double distance) const;
+    /// Grown with corners kept sharp: few points more than before.
+    Region widened(double distance) const;
+    /// Without points that lie within `tolerance` metres of the line between their neighbours; topology is kept.
+    Region simplified(double tolerance) const;
     Region clipped(double minX, double minY, double maxX, double maxY) const;
 
     bool empty() const;

@@ -7,6 +7,8 @@ namespace city {
 namespace {
 
 constexpr double kerbWidth = 0.15;
+constexpr double kerbTolerance =
+    0.04;  // by which a kerb may be straighter than planned: less than its own width
 constexpr double narrowestMedian = 0.6;  // narrower ones are painted, not built
 
 Region kerbsideOf(const StreetLayout& layout, const StreetJunction& junction) {
@@ -77,14 +79,15 @@ StreetAreas areasOf(const StreetLayout& layout) {
         carriageways.push_back(area);
     }
     StreetAreas areas;
-    const Region driven = Region::united(carriageways);
+    const Region driven = Region::united(carriageways).simplified(kerbTolerance);
     const Region island = Region::united(islands);
     const Region medianBed = Region::united(beds);
     areas.tramBed = medianBed.with(Region::united(ownBeds).without(driven));
     areas.carriageway = driven.without(medianBed).without(island);
     const Region level = driven.without(island).with(areas.tramBed);
-    const Region raised = Region::united(walks).without(driven).with(island).without(level);
-    areas.kerb = raised.within(level.grown(kerbWidth));
+    const Region raised =
+        Region::united(walks).simplified(kerbTolerance).without(driven).with(island).without(level);
+    areas.kerb = raised.within(level.widened(kerbWidth));
     areas.pavement = raised.without(areas.kerb);
     return areas;
 }
