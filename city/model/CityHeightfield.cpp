@@ -1,7 +1,10 @@
 #include "city/model/CityHeightfield.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <stdexcept>
 
 #include "city/terrain/Rasterise.h"
@@ -10,13 +13,15 @@ namespace city {
 
 namespace {
 
+constexpr float nothing = -std::numeric_limits<float>::infinity();
 constexpr float margin = 30;
 constexpr double mostCells = 268435456.0;
 
 Aabb transformed(const Aabb& box, const glm::mat4& m) {
     Aabb out;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 p((corner & 1) ? box.max.x : box.min.x, (corner & 2) ? box.max.y : box.min.y, (corner & 4) ? box.max.z : box.min.z);
+        const glm::vec3 p((corner & 1) ? box.max.x : box.min.x, (corner & 2) ? box.max.y : box.min.y,
+                          (corner & 4) ? box.max.z : box.min.z);
         out.extend(glm::vec3(m * glm::vec4(p, 1)));
     }
     return out;
@@ -27,9 +32,11 @@ Aabb built(const CityModel& city) {
     for (const Chunk& chunk : city.chunks)
         if (chunk.kind != ChunkKind::ground) box.extend(chunk.bounds);
     std::vector<Aabb> prototypeBounds;
-    for (const Prototype& p : city.prototypes) prototypeBounds.push_back(p.levels.empty() ? Aabb{} : p.levels.back().mesh.bounds());
+    for (const Prototype& p : city.prototypes)
+        prototypeBounds.push_back(p.levels.empty() ? Aabb{} : p.levels.back().mesh.bounds());
     for (const Placement& p : city.placements)
-        if (!prototypeBounds[p.prototype].empty()) box.extend(transformed(prototypeBounds[p.prototype], p.worldFromPrototype));
+        if (p.prototype < prototypeBounds.size() && !prototypeBounds[p.prototype].empty())
+            box.extend(transformed(prototypeBounds[p.prototype], p.worldFromPrototype));
     for (const Lane& lane : city.roads.lanes)
         for (const glm::vec3& p : lane.centreLine) box.extend(p);
     if (box.empty()) return city.bounds;
@@ -43,33 +50,119 @@ Aabb built(const CityModel& city) {
 }
 
 Heightfield fieldOver(const Aabb& box, float cellSize) {
-    if (!std::isfinite(cellSize) || cellSize <= 0) throw std::invalid_argument("a heightfield's cell size must be finite and positive");
+    if (!std::isfinite(cellSize) || cellSize <= 0)
+        throw std::invalid_argument("a heightfield's cell size must be finite and positive");
     if (box.empty()) return Heightfield(1, 1, cellSize, glm::dvec2(0));
     // On whole cells, so that cities built on a metre grid keep their walls on cell borders.
     const double x0 = std::floor(box.min.x / cellSize), x1 = std::ceil(box.max.x / cellSize);
     const double y0 = std::floor(box.min.y / cellSize), y1 = std::ceil(box.max.y / cellSize);
     const double width = std::max(1.0, x1 - x0), height = std::max(1.0, y1 - y0);
     if (!(width * height <= mostCells))
-        throw std::invalid_argument("the heightfield's cells are too small for a city of this extent; ask for larger ones with --cell");
-    return Heightfield(static_cast<int>(width), static_cast<int>(height), cellSize, glm::dvec2(x0, y0) * static_cast<double>(cellSize));
+        throw std::invalid_argument(
+            "the heightfield's cells are too small for a city of this extent; ask for larger ones with "
+            "--cell");
+    return Heightfield(static_cast<int>(width), static_cast<int>(height), cellSize,
+                       glm::dvec2(x0, y0) * static_cast<double>(cellSize));
+}
+
+/// Of each field, the highest (or lowest) of the 3 x 3 cells around; cells past the border do not count.
+template <class Choose>
+Heightfield overNeighbours(const Heightfield& field, float start, Choose choose) {
+    Heightfield result = field;
+    for (int j = 0; j < field.height(); ++j)
+        for (int i = 0; i < field.width(); ++i) {
+            float value = start;
+            for (int v = std::max(0, j - 1); v <= std::min(field.height() - 1, j + 1); ++v)
+                for (int u = std::max(0, i - 1); u <= std::min(field.width() - 1, i + 1); ++u)
+                    value = choose(value, field.at(u, v));
+            result.set(i, j, value);
+        }
+    return result;
+}
+
+void raiseTo(Heightfield& field, const Heightfield& other) {
+    for (std::size_t k = 0; k < field.cells().size(); ++k)
+        field.cells()[k] = std::max(field.cells()[k], other.cells()[k]);
+}
+
+/// Height at which a 2 x 2 block around each cell stands: thin things have none.
+Heightfield thickPart(const Heightfield& field) {
+    Heightfield result(field.width(), field.height(), field.cellSize(), field.origin());
+    for (int j = 0; j + 1 < field.height(); ++j)
+        for (int i = 0; i + 1 < field.width(); ++i) {
+            const float z = std::min(std::min(field.at(i, j), field.at(i + 1, j)),
+                                     std::min(field.at(i, j + 1), field.at(i + 1, j + 1)));
+            for (int v = j; v <= j + 1; ++v)
+                for (int u = i; u <= i + 1; ++u) result.set(u, v, std::max(result.at(u, v), z));
+        }
+    return result;
+}
+
+/// Raises cells in which a part of a building stands that the sampling at centres lost. `centres` has the
+/// centres' heights, `any` the highest point in each cell. Along an ordinary facade `any` is one cell too
+/// wide as well: there the building itself stands, in a thick part, beside the cell, and the cell is left
+/// alone.
+void keepThinWalls(const Heightfield& centres, const Heightfield& any, Heightfield& field) {
+    const Heightfield beside =
+        overNeighbours(thickPart(centres), nothing, [](float a, float b) { return std::max(a, b); });
+    // Under a pitched roof the part beside may be lower by a cell's rise.
+    const float rise = field.cellSize();
+    for (std::size_t k = 0; k < field.cells().size(); ++k) {
+        const float z = any.cells()[k];
+        if (z > field.cells()[k] && !(beside.cells()[k] >= z - rise)) field.cells()[k] = z;
+    }
+}
+
+/// The coarsest level that differs from the finest by less than a quarter of a cell.
+const Mesh* levelFor(const Prototype& prototype, float scale, float cellSize) {
+    const Mesh* chosen = nullptr;
+    for (const Prototype::Level& level : prototype.levels)
+        if (chosen == nullptr || level.error * scale <= 0.25f * cellSize) chosen = &level.mesh;
+    return chosen;
 }
 
 }  // namespace
 
 Heightfield cityHeightfield(const CityModel& city, float cellSize) {
     Heightfield field = fieldOver(built(city), cellSize);
-    for (const Chunk& chunk : city.chunks)
-        if (chunk.kind != ChunkKind::furniture) rasterise(chunk.mesh, glm::mat4(1), Coverage::centre, field);
-    for (const Placement& placement : city.placements) {
-        const Prototype& prototype = city.prototypes[placement.prototype];
-        if (prototype.inHeightfield && !prototype.levels.empty())
-            rasterise(prototype.levels.front().mesh, placement.worldFromPrototype, Coverage::centre, field);
+    Heightfield buildings = field;
+    Heightfield touched = field;
+    const glm::mat4 identity(1);
+    for (const Chunk& chunk : city.chunks) {
+        if (chunk.kind == ChunkKind::building) {
+            rasterise(chunk.mesh, identity, Coverage::centre, buildings);
+            rasterise(chunk.mesh, identity, Coverage::any, touched);
+        } else if (chunk.kind == ChunkKind::ground) {
+            rasterise(chunk.mesh, identity, Coverage::centre, field);
+        }
     }
+    Heightfield trees(field.width(), field.height(), cellSize, field.origin());
+    for (const Placement& placement : city.placements) {
+        if (placement.prototype >= city.prototypes.size()) continue;
+        const Prototype& prototype = city.prototypes[placement.prototype];
+        if (!prototype.inHeightfield) continue;
+        const glm::mat4& m = placement.worldFromPrototype;
+        const float scale = std::max(
+            {glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
+        if (const Mesh* mesh = levelFor(prototype, scale, cellSize))
+            rasterise(*mesh, m, Coverage::centre, trees);
+    }
+    // Closing: gaps between leaves fill up, the crown's outline stays.
+    if (!city.placements.empty()) {
+        const Heightfield grown =
+            overNeighbours(trees, nothing, [](float a, float b) { return std::max(a, b); });
+        const Heightfield closed = overNeighbours(grown, std::numeric_limits<float>::infinity(),
+                                                  [](float a, float b) { return std::min(a, b); });
+        raiseTo(field, closed);
+    }
+    raiseTo(field, buildings);
+    keepThinWalls(buildings, touched, field);
     return field;
 }
 
 Heightfield occluderHeightfield(const CityModel& city, float cellSize) {
     Heightfield field = fieldOver(built(city), cellSize);
+    // Chunk by chunk: a cell that two chunks cover only together stays empty, which errs on the safe side.
     for (const Chunk& chunk : city.chunks)
         if (chunk.kind == ChunkKind::building) rasterise(chunk.mesh, glm::mat4(1), Coverage::whole, field);
     return field;
