@@ -144,4 +144,21 @@ GeoTiffPlace readGeoTiffPlace(const std::filesystem::path& file) {
     return place;
 }
 
+void requireWholeTiff(const std::filesystem::path& file) {
+    const QuietTiff quiet;
+    const std::unique_ptr<TIFF, decltype(&XTIFFClose)> tiff(XTIFFOpen(file.c_str(), "r"), &XTIFFClose);
+    if (!tiff) refuse(file, "its TIFF header cannot be read; fetch or export it again");
+    const std::uint64_t size = std::filesystem::file_size(file);
+    const bool tiled = TIFFIsTiled(tiff.get()) != 0;
+    const std::uint32_t count = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint64_t offset = TIFFGetStrileOffset(tiff.get(), k);
+        const std::uint64_t bytes = TIFFGetStrileByteCount(tiff.get(), k);
+        if (offset == 0 || bytes == 0 || offset > size || bytes > size - offset)
+            refuse(file, std::string(tiled ? "tile " : "strip ") + std::to_string(k) + " of " +
+                             std::to_string(count) +
+                             " is not in the file, which is truncated; fetch or export it again");
+    }
+}
+
 }  // namespace city

@@ -19,4 +19,8 @@ struct GeoTiffPlace {
 /// place that a heightfield cannot have (rotated, not square, in degrees, not finite).
 GeoTiffPlace readGeoTiffPlace(const std::filesystem::path& file);
 
+/// OpenImageIO fills in what is missing at the end of a TIFF file; this throws std::runtime_error, one
+/// sentence, where the strips or tiles that the header names are not all within the file.
+void requireWholeTiff(const std::filesystem::path& file);
+
 }  // namespace city

@@ -98,6 +98,7 @@ class Reader {
     }
 
     const OIIO::ImageSpec& spec() const { return input_->spec(); }
+    const char* format() const { return input_->format_name(); }
 
     /// One image row of the first channel in the file's own type: OpenImageIO would divide integers by their
     /// range.
@@ -185,6 +186,7 @@ class Reader {
 LoadedHeightfield loadHeightfield(const fs::path& file, float cellSize) {
     Reader reader(file);
     const OIIO::ImageSpec& spec = reader.spec();
+    if (std::string_view(reader.format()) == "tiff") requireWholeTiff(file);
     std::vector<std::string> notes;
     std::string coordinateSystem;
     std::optional<double> noData;
@@ -195,7 +197,7 @@ LoadedHeightfield loadHeightfield(const fs::path& file, float cellSize) {
     if (described) {
         cellSize = described->cellSize;
         origin = described->origin;
-    } else if (isTiff(file)) {
+    } else if (std::string_view(reader.format()) == "tiff") {
         place = readGeoTiffPlace(file);
         noData = place.noData;
         coordinateSystem = place.coordinateSystem;
