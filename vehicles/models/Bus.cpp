@@ -150,7 +150,7 @@ VehicleModel bus() {
                   .wheel = {.radius = .48f, .width = .29f, .rimRadius = .30f, .spokes = 0},
                   .axles = {front, rear},
                   .triangles = 10000,
-                  .tolerance = 0.0015f};
+                  .tolerance = 0.0025f};
     Shell half = subdivide(
         cage(), {.rear = -6.35f, .front = 5.65f, .width = plan.width, .floor = .28f, .top = 3.02f}, 3);
     city::Mesh parts, single;

@@ -1,6 +1,7 @@
 #include "vehicles/models/Fleet.h"
 
 #include <algorithm>
+#include <future>
 
 #include "vehicles/models/Bodies.h"
 
@@ -8,7 +9,11 @@ namespace vehicles {
 
 std::vector<VehicleModel> builtInFleet() {
     std::vector<VehicleModel> fleet;
-    for (const auto build : {hatchback, saloon, van, bus, tram}) fleet.push_back(build());
+    // Each is a quarter of a second's work and none knows of the others.
+    std::vector<std::future<VehicleModel>> builds;
+    for (const auto build : {hatchback, saloon, van, bus, tram})
+        builds.push_back(std::async(std::launch::async, build));
+    for (auto& build : builds) fleet.push_back(build.get());
     return fleet;
 }
 

@@ -59,20 +59,25 @@ void addRounded(city::Mesh& mesh, const glm::vec3& centre, const glm::vec3& half
         for (int s = 0; s < segments; ++s) {
             const float u = glm::pi<float>() * (static_cast<float>(r) / static_cast<float>(rows) - 0.5f);
             const float v = glm::two_pi<float>() * static_cast<float>(s) / static_cast<float>(segments);
-            // The poles would make the normal undefined; a quarter of a degree off shows nothing.
-            const float cu = std::max(std::cos(u), 4e-3f), su = std::sin(u);
+            const bool pole = r == 0 || r == rows;
+            const float cu = pole ? 0.0f : std::cos(u), su = std::sin(u);
             const glm::vec3 unit{signedPower(cu, e) * signedPower(std::cos(v), e),
                                  signedPower(cu, e) * signedPower(std::sin(v), e), signedPower(su, e)};
-            const glm::vec3 n{signedPower(cu, 2 - e) * signedPower(std::cos(v), 2 - e) / half.x,
-                              signedPower(cu, 2 - e) * signedPower(std::sin(v), 2 - e) / half.y,
-                              signedPower(su, 2 - e) / half.z};
+            glm::vec3 n{0, 0, su};  // at a pole, where the rest would vanish
+            if (!pole)
+                n = {signedPower(cu, 2 - e) * signedPower(std::cos(v), 2 - e) / half.x,
+                     signedPower(cu, 2 - e) * signedPower(std::sin(v), 2 - e) / half.y,
+                     signedPower(su, 2 - e) / half.z};
             mesh.vertices.push_back(corner(centre + turn * (half * unit), turn * glm::normalize(n), surface));
         }
     const auto count = static_cast<std::uint32_t>(segments);
     for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(rows); ++r)
         for (std::uint32_t s = 0; s < count; ++s) {
             const std::uint32_t a = base + r * count + s, b = base + r * count + (s + 1) % count;
-            mesh.indices.insert(mesh.indices.end(), {a, b, b + count, a, b + count, a + count});
+            // At the poles one edge has no length.
+            if (r > 0) mesh.indices.insert(mesh.indices.end(), {a, b, b + count});
+            if (r + 1 < static_cast<std::uint32_t>(rows))
+                mesh.indices.insert(mesh.indices.end(), {a, b + count, a + count});
         }
 }
 

@@ -143,7 +143,7 @@ VehicleModel tram() {
                   .wheel = {.radius = .30f, .width = .12f, .rimRadius = .26f, .spokes = 0, .tyre = false},
                   .axles = {4.6f, 2.8f, -2.8f, -4.6f},
                   .triangles = 10000,
-                  .tolerance = 0.0015f,
+                  .tolerance = 0.0025f,
                   .noneSteer = true};
     Shell half = subdivide(
         cage(), {.rear = -halfLength, .front = halfLength, .width = plan.width, .floor = .16f, .top = 3.28f},
