@@ -72,6 +72,36 @@ ToStreet toStreet(const StreetGraph& streets, glm::vec2 p) {
     return best;
 }
 
+/// Streets are as wide as their class where the map does not tell: what the map sets into such a carriageway
+/// moves to its kerb.
+glm::vec2 besideCarriageway(const StreetGraph& streets, glm::vec2 p) {
+    constexpr float kerbDistance = 0.6f;
+    float deepest = 0;
+    glm::vec2 out = p;
+    for (const StreetGraph::Edge& edge : streets.edges) {
+        const float half =
+            0.5f *
+            (static_cast<float>(edge.lanesForward + edge.lanesBackward) * edge.laneWidth + edge.medianWidth);
+        for (std::size_t i = 0; i + 1 < edge.shape.size(); ++i) {
+            const glm::vec2 a(edge.shape[i]);
+            const glm::vec2 d = glm::vec2(edge.shape[i + 1]) - a;
+            const float lengthSquared = glm::dot(d, d);
+            if (!(lengthSquared > 0)) continue;
+            const float t = glm::dot(p - a, d) / lengthSquared;
+            if (t < 0 || t > 1) continue;
+            const glm::vec2 from = p - (a + t * d);
+            const float distance = glm::length(from);
+            const float depth = half + kerbDistance - distance;
+            if (depth <= deepest) continue;
+            const glm::vec2 side =
+                distance > 0.01f ? from / distance : glm::vec2(d.y, -d.x) / std::sqrt(lengthSquared);
+            deepest = depth;
+            out = p + depth * side;
+        }
+    }
+    return out;
+}
+
 class Furnisher {
   public:
     Furnisher(const OsmData& data, const StreetGraph& streets, const Palette& palette, std::uint64_t seed,
@@ -132,7 +162,8 @@ class Furnisher {
         return place->second;
     }
 
-    void stand(std::uint32_t which, glm::vec2 foot, glm::vec2 front, float scale = 1) {
+    void stand(std::uint32_t which, glm::vec2 mapped, glm::vec2 front, float scale = 1) {
+        const glm::vec2 foot = besideCarriageway(streets_, mapped);
         const float z = toStreetHeight(foot);
         model_.placements.push_back({which, standing(glm::vec3(foot, z), front, scale)});
     }

@@ -201,6 +201,27 @@ void addQuays(const std::vector<Footprint>& water, glm::vec2 low, glm::vec2 high
     }
 }
 
+/// The two rails of a track, as ribbons on its bed.
+void addRails(const std::vector<glm::vec2>& track, std::uint32_t material, Mesh& mesh) {
+    constexpr float halfGauge = 0.75f;
+    constexpr float width = 0.12f;
+    constexpr float height = groundHeight + 0.03f;
+    for (std::size_t i = 0; i + 1 < track.size(); ++i) {
+        const glm::vec2 d = track[i + 1] - track[i];
+        const float length = glm::length(d);
+        if (!(length > 0)) continue;
+        const glm::vec2 left = glm::vec2(-d.y, d.x) / length;
+        for (const float side : {-halfGauge, halfGauge}) {
+            const auto corner = [&](glm::vec2 p, float across, float along) {
+                return Vertex{
+                    glm::vec3(p + (side + across) * left, height), {0, 0, 1}, {across, along}, material};
+            };
+            mesh.addQuad(corner(track[i], -width / 2, 0), corner(track[i + 1], -width / 2, length),
+                         corner(track[i + 1], width / 2, length), corner(track[i], width / 2, 0));
+        }
+    }
+}
+
 struct Boxed {
     const Footprint* footprint;
     glm::vec2 low;
@@ -235,6 +256,7 @@ GroundPlan planGround(const OsmData& data) {
         for (const OsmPiece& piece : piecesWithin(way, data.halfSize)) {
             put(cover, strip(piece.points, pathWidth(way.tags, use)));
             ++plan.paths;
+            if (use == WayUse::rail) plan.tracks.push_back(piece.points);
         }
     }
     planSea(data, plan);
@@ -299,6 +321,9 @@ std::vector<Mesh> buildGround(const GroundPlan& plan, glm::vec2 halfSize, const 
     // Around and below everything, also under the hairlines between cells.
     const glm::vec2 reach = halfSize + apron;
     addFlat({rectangle(-reach, reach)}, {palette.hills, apronHeight}, palette, meshes.back());
+    Mesh rails;
+    for (const auto& track : plan.tracks) addRails(track, palette.streets.rail, rails);
+    meshes.push_back(std::move(rails));
     std::erase_if(meshes, [](const Mesh& mesh) { return mesh.empty(); });
     return meshes;
 }

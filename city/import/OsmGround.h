@@ -25,6 +25,7 @@ enum class Cover : std::uint8_t {
 
 struct GroundPlan {
     std::vector<std::vector<Footprint>> covers;  ///< by Cover; may overlap and reach out of the bounds
+    std::vector<std::vector<glm::vec2>> tracks;  ///< axes of railway tracks
     std::size_t waterAreas = 0;
     std::size_t greenAreas = 0;
     std::size_t paths = 0;

@@ -3,12 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
+#include "city/import/OsmBuildings.h"
 #include "city/import/OsmReader.h"
+#include "city/import/OsmStreets.h"
+#include "city/import/StreetWidths.h"
+#include "city/model/PolygonAlgebra.h"
+#include "city/roads/BuildRoadNetwork.h"
 #include "tests/city/import/OsmText.h"
 
 namespace city {
@@ -101,6 +107,18 @@ TEST(LoadCity, GroundIsPartedWithoutOverlap) {
     }
     EXPECT_NEAR(water, 900, 10);
     EXPECT_NEAR(flat, 300.0 * 300.0, 0.002 * 300 * 300);
+}
+
+TEST(LoadCity, NothingStandsInTheCarriageway) {
+    OsmText text = town();
+    text.node(-60, 0.5, {{"natural", "tree"}});
+    text.node(60, -2, {{"highway", "street_lamp"}});
+    const CityModel model = loadCity(text.save("carriageway.osm"), {});
+    for (const Placement& placement : model.placements) {
+        const glm::vec3 foot(placement.worldFromPrototype[3]);
+        if (std::abs(foot.x) < 20) continue;  // the other street
+        EXPECT_GT(std::abs(foot.y), 3.5f);
+    }
 }
 
 TEST(LoadCity, SameSeedSameCityAndOtherSeedOtherFaces) {
@@ -228,6 +246,29 @@ TEST(LoadCity, HelsinkiIsSoundAndDrivable) {
     EXPECT_GT(trams, 20u);
     EXPECT_GT(model.signalHeads.size(), 20u);
     EXPECT_GT(model.notes.size(), 5u);
+}
+
+TEST(LoadCity, NoLaneOfHelsinkiRunsThroughABuilding) {
+    if (!std::filesystem::exists(helsinki())) GTEST_SKIP() << helsinki() << " is not here";
+    const OsmData data = readOsm(helsinki(), {});
+    StreetPlan streets = planStreets(data);
+    MaterialTable table;
+    std::vector<Footprint> buildings;
+    for (const BuildingPlan& plan : planBuildings(data, streets.mainStreets, 1, table).plans)
+        if (plan.shape.base < 4) buildings.push_back(plan.shape.footprint);
+    fitStreetsBetween(buildings, streets.graph);
+    std::size_t points = 0;
+    std::size_t inside = 0;
+    for (const Lane& lane : buildRoadNetwork(streets.graph).lanes) {
+        for (const glm::vec3& p : lane.centreLine) {
+            ++points;
+            inside += std::any_of(buildings.begin(), buildings.end(), [&](const Footprint& building) {
+                return contains(building, glm::vec2(p));
+            });
+        }
+    }
+    EXPECT_GT(points, 4000u);
+    EXPECT_EQ(inside, 0u);
 }
 
 TEST(LoadCity, TruncatedHelsinkiSaysSo) {
