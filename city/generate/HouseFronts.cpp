@@ -128,7 +128,8 @@ void appendFrontDetails(const Lot& lot, std::size_t side, const HouseDesign& des
         }
     }
     if (design.bayWindow && front.bays >= 3 && upper >= 3) {
-        const float s0 = static_cast<float>(front.bays / 2) * front.bay, s1 = s0 + front.bay;
+        const int middleBay = front.bays / 2;
+        const float s0 = static_cast<float>(middleBay) * front.bay, s1 = s0 + front.bay;
         const float z1 = front.floor + static_cast<float>(upper - 1) * design.storeyHeight;
         front.box(meshes.details, {s0, s1, 0, 0.9f, front.floor, z1}, design.style.blank, boxLeft | boxRight);
         front.box(meshes.details, {s0 - 0.06f, s1 + 0.06f, 0, 0.98f, z1, z1 + 0.2f}, design.style.trim,

@@ -163,7 +163,8 @@ void addPaperStreets(const RoadNetwork& roads, const Palette& palette, std::size
 
     // Dashes between the lanes: spread evenly over all segments, what does not divide goes to the first ones.
     const std::size_t dashes = (triangles - used) / 2;
-    const std::size_t rows = 2u * L::lines * (L::lines - 1) * 2u;
+    constexpr std::size_t lines = L::lines;
+    const std::size_t rows = 4 * lines * (lines - 1);
     ChunkCollector dashed(260);
     std::size_t row = 0;
     for (int direction = 0; direction < 2; ++direction) {

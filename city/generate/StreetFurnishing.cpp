@@ -89,9 +89,11 @@ void furnishStreetSide(const SideFrame& side, bool trees, bool lamps, const Pale
         const float step = side.length / static_cast<float>(count);
         for (int k = 0; k < count; ++k)
             place(model, standing.streetLamp,
-                  side.at((static_cast<float>(k) + 0.5f) * step + 5 * 0.5f, lampRow), -side.away);
+                  side.at((static_cast<float>(k) + 0.5f) * step + 2.5f, lampRow), -side.away);
     }
-    for (float s = 3; s < side.length; s += 4) {
+    constexpr float bollardStep = 4;
+    for (int k = 0; k < static_cast<int>((side.length - 3) / bollardStep); ++k) {
+        const float s = 3 + bollardStep * static_cast<float>(k);
         if (!trees && random.chance(0.2)) place(model, standing.bollard, side.at(s, 0.4f), -side.away);
     }
 }
