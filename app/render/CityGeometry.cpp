@@ -77,6 +77,7 @@ CityGeometry::CityGeometry(const city::CityModel& city) {
             box.extend(level.mesh.bounds());
             p.levels.push_back({collector.add(level.mesh), level.error});
         }
+        p.bounds = box;
         if (!box.empty()) {
             p.centre = box.centre();
             for (const city::Prototype::Level& level : prototype.levels)
@@ -98,8 +99,13 @@ CityGeometry::CityGeometry(const city::CityModel& city) {
             {glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
         p.centre = glm::vec3(m * glm::vec4(prototype.centre, 1));
         p.radius = prototype.radius * p.scale;
-        bounds_.extend(p.centre - glm::vec3(p.radius));
-        bounds_.extend(p.centre + glm::vec3(p.radius));
+        for (int corner = 0; corner < 8; ++corner) {
+            const city::Aabb& b = prototype.bounds;
+            p.bounds.extend(glm::vec3(m * glm::vec4((corner & 1) != 0 ? b.max.x : b.min.x,
+                                                    (corner & 2) != 0 ? b.max.y : b.min.y,
+                                                    (corner & 4) != 0 ? b.max.z : b.min.z, 1)));
+        }
+        bounds_.extend(p.bounds);
         placements_.push_back(p);
     }
 

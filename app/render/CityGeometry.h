@@ -38,6 +38,7 @@ class CityGeometry {
     };
     struct Prototype {
         std::vector<Level> levels;
+        city::Aabb bounds;    ///< prototype's frame
         glm::vec3 centre{0};  ///< bounding sphere in the prototype's frame
         float radius = 0;
     };
@@ -46,7 +47,8 @@ class CityGeometry {
         PlacementInstance instance;
         glm::vec3 centre{0};  ///< bounding sphere, world
         float radius = 0;
-        float scale = 1;  ///< largest stretch of the transform
+        city::Aabb bounds;  ///< world
+        float scale = 1;    ///< largest stretch of the transform
     };
 
     explicit CityGeometry(const city::CityModel& city);

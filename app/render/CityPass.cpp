@@ -60,7 +60,7 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
     for (std::uint32_t i = 0; i < chunks.size(); ++i) {
         const glm::vec3 centre = chunks[i].bounds.centre() - eye;
         const glm::vec3 half = 0.5f * chunks[i].bounds.size();
-        if (!view.frustum.touches(centre, half)) {
+        if (!view.sees(chunks[i].bounds)) {
             ++counts.chunksCulled;
             continue;
         }
@@ -95,7 +95,8 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
         const CityGeometry::Placement& p = placements[i];
         const glm::vec3 centre = p.centre - eye;
-        if (!view.frustum.touches(centre, p.radius)) continue;
+        if (!view.sees(p.bounds)) continue;
+        if (view.allowedError(1, glm::length(centre)) > 2 * p.radius) continue;  // smaller than a pixel
         const auto& levels = geometry_.prototypes()[p.prototype].levels;
         const float distance = std::max(glm::length(centre) - p.radius, 0.1f);
         const float allowed = view.allowedError(tolerance, distance) / std::max(p.scale, 1e-6f);

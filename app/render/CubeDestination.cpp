@@ -10,8 +10,8 @@ namespace gl = reflection::gl;
 
 namespace {
 
-/// Six layers of the caller's cube array by themselves, so that clearing and drawing touch no other cube. Made anew for each cube: the caller
-/// may have deleted its texture and got the same name for another.
+/// Six layers of the caller's cube array by themselves, so that clearing and drawing touch no other cube.
+/// Made anew for each cube: the caller may have deleted its texture and got the same name for another.
 gl::Texture facesOf(std::uint32_t texture, int cube) {
     GLint format = 0;
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_INTERNAL_FORMAT, &format);
@@ -21,7 +21,8 @@ gl::Texture facesOf(std::uint32_t texture, int cube) {
 }  // namespace
 
 CubeDestination::CubeDestination()
-    : layered_(epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")), framebuffer_(gl::Framebuffer::create()) {}
+    : layered_(epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")),
+      framebuffer_(gl::Framebuffer::create()) {}
 
 void CubeDestination::requireDepth(int faceSize) {
     if (depthSize_ == faceSize) return;
@@ -52,7 +53,8 @@ void CubeDestination::begin(const reflection::CubeTarget& target) {
 void CubeDestination::selectFace(int face) {
     if (layered_) return;
     framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, target_.colour, 6 * target_.layer + face);
-    if (target_.distance != 0) framebuffer_.attachLayer(GL_COLOR_ATTACHMENT1, target_.distance, 6 * target_.layer + face);
+    if (target_.distance != 0)
+        framebuffer_.attachLayer(GL_COLOR_ATTACHMENT1, target_.distance, 6 * target_.layer + face);
     framebuffer_.attachLayer(GL_DEPTH_ATTACHMENT, depth_.name(), face);
     glClear(GL_DEPTH_BUFFER_BIT);
 }

@@ -6,8 +6,9 @@
 
 namespace app {
 
-/// The six faces of one cube as something to draw into. Where vertex shaders may choose the layer, all six are one target and one
-/// `begin` serves all (a software rasteriser then bins and rasterises them as one scene); elsewhere each face is bound in turn.
+/// The six faces of one cube as something to draw into. Where vertex shaders may choose the layer, all six
+/// are one target and one `begin` serves all (a software rasteriser then bins and rasterises them as one
+/// scene); elsewhere each face is bound in turn.
 class CubeDestination {
   public:
     CubeDestination();

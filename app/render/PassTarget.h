@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/render/Frustum.h"
+#include "app/render/Skyline.h"
 
 namespace app {
 
@@ -32,6 +33,13 @@ struct PassView {
     Frustum frustum{glm::mat4(1)};
     float pixelsPerRadian = 700;  ///< near the middle of the image; of parallel views: pixels per metre
     bool parallel = false;
+    const SkylineView* skyline = nullptr;  ///< what hides behind buildings; null: nothing is left out
+
+    /// Whether something (world) needs drawing: it may be seen.
+    bool sees(const city::Aabb& box) const {
+        if (!frustum.touches(box.centre() - glm::vec3(eye), 0.5f * box.size())) return false;
+        return skyline == nullptr || !skyline->hides(box);
+    }
 
     PassView(const glm::dvec3& eyePosition, const glm::mat4& clip, float pixels)
         : eye(eyePosition), clipFromRelative(clip), frustum(clip), pixelsPerRadian(pixels) {}

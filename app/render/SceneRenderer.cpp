@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
 #include "app/render/CityPass.h"
 #include "app/render/CubeDestination.h"
@@ -23,12 +24,15 @@ namespace gl = reflection::gl;
 
 namespace {
 
+/// Beams around the eye by which hidden things are left out: 0.18 and 0.7 degrees wide.
+constexpr int viewBeams = 2048;
+constexpr int cubeBeams = 512;
 /// Cubes are seen from inside vehicles, close to the road.
 constexpr float cubeNear = 0.05f;
 /// Pixels by which a level of detail may be off on screen.
-constexpr float levelTolerance = 0.75f;
+constexpr float levelTolerance = 2.5f;
 /// The same for plants: where a leaf sits does not show, only how dense and how wide they are.
-constexpr float foliageTolerance = 6;
+constexpr float foliageTolerance = 10;
 
 float pixelsPerRadian(const View& view) {
     return 0.5f * static_cast<float>(view.size.y) * std::abs(view.clipFromView[1][1]);
@@ -63,6 +67,7 @@ struct SceneRenderer::Impl {
     Impl(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
          const RenderOptions& renderOptions)
         : options(renderOptions),
+          skyline(city),
           cityPass(city),
           shadow(cityPass.geometry().bounds(), shadowSize(cityPass.geometry().bounds())),
           vehiclePass(models),
@@ -104,7 +109,28 @@ struct SceneRenderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
+    std::optional<SkylineView> skylineFor(const PassView& view, int beams, bool allAround) const {
+        if (!options.occlusionCulling) return std::nullopt;
+        return SkylineView(skyline, view.eye, beams,
+                           allAround ? SkylineView::Sector{} : SkylineView::sectorOf(view.clipFromRelative));
+    }
+
+    std::vector<VisibleVehicle> visible(const PassView& pass) const {
+        std::vector<VisibleVehicle> found;
+        for (std::uint32_t i = 0; i < poses.size(); ++i) {
+            const vehicles::VehiclePose& pose = poses[i];
+            if (pose.model >= vehiclePass.geometry().models().size() ||
+                !pass.sees(vehiclePass.boundsOf(pose)))
+                continue;
+            const float radius = vehiclePass.geometry().models()[pose.model].radius;
+            const float distance = std::max(glm::length(vehiclePass.centreOf(pose, pass.eye)), 0.5f * radius);
+            found.push_back({i, 2 * radius / distance * pass.pixelsPerRadian});
+        }
+        return found;
+    }
+
     RenderOptions options;
+    Skyline skyline;
     CityPass cityPass;
     ShadowMap shadow;
     VehiclePass vehiclePass;
@@ -142,7 +168,9 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     Impl& my = *impl_;
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
-    const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
+    PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
+    const std::optional<SkylineView> skyline = my.skylineFor(pass, viewBeams, false);
+    pass.skyline = skyline ? &*skyline : nullptr;
 
     my.updateShadow();
     setDrawState();
@@ -150,7 +178,7 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     my.setFrame(pass);
 
     my.chosen.clear();
-    for (const VisibleVehicle& v : visibleVehicles(view)) my.chosen.push_back(v.index);
+    for (const VisibleVehicle& v : my.visible(pass)) my.chosen.push_back(v.index);
     const VehiclePass::Counts vehicles =
         my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
                             {&reflections.textures, reflections.slots}, levelTolerance);
@@ -173,10 +201,12 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
     my.updateShadow();
     setDrawState();
     my.cube.begin(target);
+    const PassView around(centre, clipFromCubeFace(0, cubeNear), 1);
+    const std::optional<SkylineView> skyline = my.skylineFor(around, cubeBeams, true);
     for (int face = 0; face < 6; ++face) {
         my.cube.selectFace(face);
-        const PassView pass(centre, clipFromCubeFace(face, cubeNear),
-                            0.5f * static_cast<float>(target.faceSize));
+        PassView pass(centre, clipFromCubeFace(face, cubeNear), 0.5f * static_cast<float>(target.faceSize));
+        pass.skyline = skyline ? &*skyline : nullptr;
         my.setFrame(pass, face);
         if (content.vehicles) {
             my.chosen.clear();
@@ -185,9 +215,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
                 if (pose.id == content.excludedVehicle ||
                     pose.model >= my.vehiclePass.geometry().models().size())
                     continue;
-                if (pass.frustum.touches(my.vehiclePass.centreOf(pose, centre),
-                                         my.vehiclePass.geometry().models()[pose.model].radius))
-                    my.chosen.push_back(i);
+                if (pass.sees(my.vehiclePass.boundsOf(pose))) my.chosen.push_back(i);
             }
             my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, levelTolerance);
         }
@@ -202,18 +230,10 @@ const RenderCounters& SceneRenderer::counters() const {
 
 std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(const View& view) const {
     const Impl& my = *impl_;
-    const PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
-    std::vector<VisibleVehicle> visible;
-    for (std::uint32_t i = 0; i < my.poses.size(); ++i) {
-        const vehicles::VehiclePose& pose = my.poses[i];
-        if (pose.model >= my.vehiclePass.geometry().models().size()) continue;
-        const float radius = my.vehiclePass.geometry().models()[pose.model].radius;
-        const glm::vec3 centre = my.vehiclePass.centreOf(pose, view.eye);
-        if (!pass.frustum.touches(centre, radius)) continue;
-        const float distance = std::max(glm::length(centre), 0.5f * radius);
-        visible.push_back({i, 2 * radius / distance * pass.pixelsPerRadian});
-    }
-    return visible;
+    PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
+    const std::optional<SkylineView> skyline = my.skylineFor(pass, viewBeams, false);
+    pass.skyline = skyline ? &*skyline : nullptr;
+    return my.visible(pass);
 }
 
 }  // namespace app

@@ -11,7 +11,9 @@
 
 namespace app {
 
-/// The vehicle models' meshes on the GPU: one vertex and one index buffer for all.
+/// The vehicle models' meshes on the GPU: one vertex and one index buffer for all. Where a model's next level
+/// has less than a quarter of the triangles, a level between is made; wheels get coarser levels too, as four
+/// fine wheels weigh more than a coarse body.
 class VehicleGeometry {
   public:
     struct Level {
@@ -19,9 +21,13 @@ class VehicleGeometry {
         bool wheelsInBody = false;
         float error = 0;  ///< metres
     };
+    struct WheelLevel {
+        MeshRange mesh;
+        float error = 0;  ///< metres
+    };
     struct Model {
         std::vector<Level> levels;
-        MeshRange wheel;
+        std::vector<WheelLevel> wheelLevels;  ///< finest first; empty: no wheels of their own
         std::vector<vehicles::VehicleModel::Wheel> wheels;
         glm::vec3 centre{0};  ///< of the bounding box, vehicle frame
         glm::vec3 halfSize{0};

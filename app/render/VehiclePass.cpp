@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <numbers>
 #include <tuple>
@@ -51,6 +52,19 @@ glm::vec3 VehiclePass::centreOf(const vehicles::VehiclePose& pose, const glm::dv
     return position + worldFromVehicle(pose) * geometry_.models()[pose.model].centre;
 }
 
+city::Aabb VehiclePass::boundsOf(const vehicles::VehiclePose& pose) const {
+    city::Aabb box;
+    if (pose.model >= geometry_.models().size()) return box;
+    const VehicleGeometry::Model& model = geometry_.models()[pose.model];
+    const glm::mat3 rotation = worldFromVehicle(pose);
+    const glm::mat3 extent(glm::abs(rotation[0]), glm::abs(rotation[1]), glm::abs(rotation[2]));
+    const glm::vec3 centre = glm::vec3(pose.position) + rotation * model.centre;
+    const glm::vec3 half = extent * model.halfSize;
+    box.extend(centre - half);
+    box.extend(centre + half);
+    return box;
+}
+
 VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                                       std::span<const vehicles::VehiclePose> poses,
                                       std::span<const std::uint32_t> chosen, const Reflections& reflections,
@@ -82,13 +96,17 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
             if (!range.empty()) pieces_.push_back({group, range.firstIndex, range, instance});
         };
         add(model.levels[level].body, instanceOf(rotation, position, pose, layer));
-        if (!model.levels[level].wheelsInBody) {
+        if (!model.levels[level].wheelsInBody && !model.wheelLevels.empty()) {
+            std::size_t wheelLevel = 0;
+            while (wheelLevel + 1 < model.wheelLevels.size() &&
+                   model.wheelLevels[wheelLevel + 1].error <= allowed)
+                ++wheelLevel;
+            const MeshRange& wheelMesh = model.wheelLevels[wheelLevel].mesh;
             for (const vehicles::VehicleModel::Wheel& wheel : model.wheels) {
                 glm::mat3 turn = aboutY(pose.wheelAngle);
                 if (wheel.steered) turn = aboutZ(pose.steering) * turn;
                 if (wheel.mirrored) turn = turn * aboutZ(std::numbers::pi);
-                add(model.wheel,
-                    instanceOf(rotation * turn, position + rotation * wheel.centre, pose, layer));
+                add(wheelMesh, instanceOf(rotation * turn, position + rotation * wheel.centre, pose, layer));
             }
         }
         ++counts.vehicles;

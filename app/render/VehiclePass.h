@@ -33,6 +33,8 @@ class VehiclePass {
 
     const VehicleGeometry& geometry() const { return geometry_; }
 
+    /// World box of a pose: upright, wide enough for any heading.
+    city::Aabb boundsOf(const vehicles::VehiclePose& pose) const;
     /// Bounding sphere's centre of a pose, relative to an eye.
     glm::vec3 centreOf(const vehicles::VehiclePose& pose, const glm::dvec3& eye) const;
 

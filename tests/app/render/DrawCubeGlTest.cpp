@@ -43,7 +43,8 @@ void main() { values[gl_GlobalInvocationID.x] = textureLod(cubes, vec4(direction
     glUseProgram(program);
     glDispatchCompute(static_cast<GLuint>(directions.size()), 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
-    glGetNamedBufferSubData(out.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(glm::vec4)), values.data());
+    glGetNamedBufferSubData(out.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(glm::vec4)),
+                            values.data());
     glBindSampler(0, 0);
     glUseProgram(0);
     glDeleteProgram(program);
@@ -71,7 +72,8 @@ TEST_F(DrawCubeGlTest, everyDirectionFindsWhatLiesThere) {
         if (length > 1 || length < 0.1f) continue;
         const glm::vec3 direction = d / length;
         bool free = true;
-        for (const glm::vec4& other : directions) free = free && glm::dot(glm::vec3(other), direction) < 0.95f;
+        for (const glm::vec4& other : directions)
+            free = free && glm::dot(glm::vec3(other), direction) < 0.95f;
         if (!free) continue;
         city::Material material;
         material.tint = glm::vec3(0);
@@ -106,7 +108,8 @@ TEST_F(DrawCubeGlTest, everyDirectionFindsWhatLiesThere) {
     }
     // Neighbouring cubes are left alone.
     for (int cube : {0, 2})
-        for (const glm::vec4& value : sampleCube(distance.name(), cube, directions)) EXPECT_EQ(value.x, untouched);
+        for (const glm::vec4& value : sampleCube(distance.name(), cube, directions))
+            EXPECT_EQ(value.x, untouched);
 }
 
 TEST_F(DrawCubeGlTest, skyIsThatOfTheProcessorAndInfinitelyFar) {
@@ -141,7 +144,9 @@ TEST_F(DrawCubeGlTest, skyIsThatOfTheProcessorAndInfinitelyFar) {
         for (std::size_t i = 0; i < directions.size(); ++i) {
             const glm::vec3 wanted = skyRadiance(scene.lighting, glm::vec3(directions[i]));
             // Powers up to 320 magnify rounding of the direction: a few parts in a thousand near the sun.
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(colours[i][c], wanted[c], 0.004f * wanted[c] + 1e-4f) << hour << " h, texel " << i;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(colours[i][c], wanted[c], 0.004f * wanted[c] + 1e-4f)
+                    << hour << " h, texel " << i;
             EXPECT_TRUE(std::isinf(distances[i].x) && distances[i].x > 0);
         }
     }

@@ -1,6 +1,6 @@
 // Frame times and stills of a city, by hand; not run by the tests.
-//   RenderBenchmark [--city paper|boxes] [--cars N] [--frames N] [--aa none|fxaa|msaa4] [--size WxH] [--at
-//   SECONDS of the tour]
+//   RenderBenchmark [--city paper|boulevard|boxes] [--cars N] [--frames N] [--aa none|fxaa|msaa4] [--size
+//   WxH] [--at SECONDS of the tour]
 //                   [--eye x,y,z --target x,y,z] [--hour H] [--no-culling] [--no-shadows] [--one-map] [--out
 //                   NAME]
 #include <epoxy/gl.h>
@@ -18,11 +18,13 @@
 #include "app/display/OffscreenContext.h"
 #include "app/render/Readback.h"
 #include "app/render/SceneRenderer.h"
+#include "city/generate/Boulevard.h"
 #include "city/generate/PaperCity.h"
 #include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Texture.h"
 #include "tests/app/render/BoxWorld.h"
 #include "tests/app/render/WritePng.h"
+#include "vehicles/models/Fleet.h"
 
 namespace {
 
@@ -45,7 +47,8 @@ std::string times(int repeats, Work work) {
     const double processor = 1000.0 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / repeats;
     std::ranges::sort(all);
     char text[100];
-    std::snprintf(text, sizeof text, "median %.2f min %.2f max %.2f ms, processor %.2f ms", all[all.size() / 2], all.front(), all.back(), processor);
+    std::snprintf(text, sizeof text, "median %.2f min %.2f max %.2f ms, processor %.2f ms",
+                  all[all.size() / 2], all.front(), all.back(), processor);
     return text;
 }
 
@@ -75,7 +78,7 @@ struct Options {
 /// Cars along the lanes, nearest to the eye first, only where they can be seen.
 std::vector<vehicles::VehiclePose> parkOnLanes(const city::CityModel& city, app::SceneRenderer& renderer,
                                                const app::View& view, app::FrameScene scene,
-                                               std::size_t wanted, std::uint32_t models) {
+                                               std::size_t wanted) {
     std::vector<vehicles::VehiclePose> all;
     for (const city::Lane& lane : city.roads.lanes) {
         if (lane.kind != city::LaneKind::car) continue;
@@ -101,7 +104,7 @@ std::vector<vehicles::VehiclePose> parkOnLanes(const city::CityModel& city, app:
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto id = static_cast<std::uint32_t>(i);
         all[i].id = id;
-        all[i].model = (id * 7 / 3) % models;
+        all[i].model = id % 11 == 7 ? 3 : id % 7 == 3 ? 2 : (id * 7 / 3) % 2;
         all[i].wheelAngle = static_cast<float>(i);
         const glm::vec3 paints[]{{0.45f, 0.02f, 0.02f},  {0.02f, 0.06f, 0.25f}, {0.55f, 0.55f, 0.57f},
                                  {0.02f, 0.02f, 0.022f}, {0.7f, 0.7f, 0.68f},   {0.03f, 0.16f, 0.08f},
@@ -130,8 +133,10 @@ int main(int argc, char** argv) {
 
     const app::OffscreenContext context;
     const auto start = Clock::now();
-    const city::CityModel city = cityName == "boxes" ? app::test::boxCity() : city::generatePaperCity();
-    const std::vector<vehicles::VehicleModel> models{app::test::boxCar()};
+    const city::CityModel city = cityName == "boxes"       ? app::test::boxCity()
+                                 : cityName == "boulevard" ? city::generateBoulevard()
+                                                           : city::generatePaperCity();
+    const std::vector<vehicles::VehicleModel> models = vehicles::builtInFleet();
     const auto generated = Clock::now();
     app::RenderOptions options;
     options.antialiasing = aa == "msaa4"  ? app::Antialiasing::msaa4
@@ -162,8 +167,7 @@ int main(int argc, char** argv) {
     scene.views = {view};
     scene.lighting = app::lightingAt(std::stod(o.text("--hour", "14.5")));
     scene.vehicles =
-        parkOnLanes(city, renderer, view, scene, static_cast<std::size_t>(o.number("--cars", 30)),
-                    static_cast<std::uint32_t>(models.size()));
+        parkOnLanes(city, renderer, view, scene, static_cast<std::size_t>(o.number("--cars", 30)));
     scene.signalColours.resize(city.signalHeads.size(), vehicles::SignalColour::red);
 
     app::VehicleReflections reflections;

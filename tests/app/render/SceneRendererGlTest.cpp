@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "app/display/OffscreenContext.h"
 #include "app/render/Readback.h"
+#include "city/generate/Boulevard.h"
+#include "city/generate/PaperCity.h"
 #include "reflection/gl/DebugOutput.h"
 #include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Texture.h"
@@ -67,6 +70,129 @@ TEST_F(SceneRendererGlTest, drawsStreetCarsAndSky) {
     EXPECT_EQ(renderer.counters().vehiclesDrawn, 3u);
     EXPECT_GT(renderer.counters().chunksCulled, 0u);
     EXPECT_GT(renderer.counters().chunksDrawn, 0u);
+}
+
+/// The same view with and without occlusion culling: the pixels equal, and something was left out somewhere.
+void expectSamePixels(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
+                      FrameScene scene, const std::vector<View>& views, std::uint32_t framebuffer) {
+    RenderOptions options;
+    options.antialiasing = Antialiasing::none;
+    SceneRenderer culling(city, models, options);
+    options.occlusionCulling = false;
+    SceneRenderer all(city, models, options);
+    std::uint32_t saved = 0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        culling.prepare(scene);
+        culling.drawView(views[i], {}, framebuffer);
+        const Image8 withCulling = readPixels(framebuffer, views[i].size);
+        all.prepare(scene);
+        all.drawView(views[i], {}, framebuffer);
+        const Image8 without = readPixels(framebuffer, views[i].size);
+        std::size_t different = 0;
+        for (std::size_t k = 0; k < without.rgba.size(); ++k)
+            different += withCulling.rgba[k] != without.rgba[k] ? 1 : 0;
+        // Edges that meet without sharing vertices let a far pixel shine through here and there: two at most.
+        EXPECT_LE(different, 2u * 3) << "view " << i;
+        saved += all.counters().chunksDrawn - culling.counters().chunksDrawn;
+    }
+    EXPECT_GT(saved, 0u);
+}
+
+TEST_F(SceneRendererGlTest, occlusionCullingChangesNoPixelOfTheBenchmarkCity) {
+    const city::CityModel city = city::generatePaperCity();
+    std::vector<View> views;
+    for (std::size_t i = 0; i < city.tour.size(); i += 9)
+        views.push_back(lookAt(city.tour[i].eye, city.tour[i].target, 1.05, size_));
+    views.push_back(lookAt({-450, -450, 120}, {0, 0, 0}, 1.0, size_));  // from the air
+    views.push_back(lookAt({20, 5, 1.6}, {20, 5, 9}, 1.2, size_));      // straight up
+    for (std::size_t i = 0; i < 40; ++i) {
+        vehicles::VehiclePose pose;
+        pose.id = static_cast<std::uint32_t>(i);
+        pose.position = {-400.0 + 20.0 * static_cast<double>(i), 11.0 * static_cast<double>(i % 7), 0};
+        scene_.vehicles.push_back(pose);
+    }
+    expectSamePixels(city, models_, scene_, views, framebuffer_.name());
+}
+
+TEST_F(SceneRendererGlTest, occlusionCullingChangesNoPixelOfTheBoulevard) {
+    const city::CityModel city = city::generateBoulevard();
+    std::vector<View> views;
+    for (std::size_t i = 0; i < city.tour.size(); i += 4)
+        views.push_back(lookAt(city.tour[i].eye, city.tour[i].target, 1.05, size_));
+    expectSamePixels(city, models_, scene_, views, framebuffer_.name());
+}
+
+TEST_F(SceneRendererGlTest, cullingHidesWhatStandsBehindBuildings) {
+    const city::CityModel city = test::boxCity();
+    SceneRenderer renderer(city, models_, {});
+    scene_.vehicles.resize(2);
+    scene_.vehicles[0].position = {20, -3, 0};
+    scene_.vehicles[1].position = {20, 47, 0};  // in the next street
+    const View view = lookAt({-14, -5, 1.7}, {30, 20, 1.7}, 1.4, size_);
+    renderer.prepare(scene_);
+    const auto visible = renderer.visibleVehicles(view);
+    ASSERT_EQ(visible.size(), 1u);
+    EXPECT_EQ(visible[0].index, 0u);
+    // A car of 4.8 m seen from 34 m, some 400 pixels a radian.
+    EXPECT_GT(visible[0].diameterPixels, 25);
+    EXPECT_LT(visible[0].diameterPixels, 80);
+}
+
+TEST_F(SceneRendererGlTest, farFromTheOriginNothingMoves) {
+    // The same scene at the origin and 4 km away: float positions there are good to 0.25 mm.
+    const city::CityModel near = test::boxCity();
+    city::CityModel far = near;
+    const glm::vec3 offset(4096, -2048, 0);
+    for (city::Chunk& chunk : far.chunks) {
+        for (city::Vertex& v : chunk.mesh.vertices) v.position += offset;
+        chunk.bounds = chunk.mesh.bounds();
+    }
+    RenderOptions options;
+    options.shadows = false;
+    SceneRenderer nearRenderer(near, models_, options);
+    const Image8 a = draw(nearRenderer, lookAt({-14, -5, 3}, {10, -2, 1}, 1.0, size_));
+    for (auto& v : scene_.vehicles) v.position += glm::dvec3(offset);
+    SceneRenderer farRenderer(far, models_, options);
+    const Image8 b = draw(farRenderer, lookAt(glm::dvec3(-14, -5, 3) + glm::dvec3(offset),
+                                              glm::dvec3(10, -2, 1) + glm::dvec3(offset), 1.0, size_));
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < a.rgba.size(); ++k)
+        different += std::abs(int(a.rgba[k]) - int(b.rgba[k])) > 8 ? 1 : 0;
+    EXPECT_LT(different, a.rgba.size() / 500);
+}
+
+TEST_F(SceneRendererGlTest, sunCastsShadowsWhereOneTracesThem) {
+    // A tower; the sun due south at 45 degrees: its shadow reaches as far north as it is high.
+    city::CityModel city;
+    city.materials.resize(1);
+    city::Mesh ground;
+    const auto at = [](float x, float y) { return city::Vertex{{x, y, 0}, {0, 0, 1}, {x, y}, 0}; };
+    ground.addQuad(at(-60, -60), at(60, -60), at(60, 60), at(-60, 60));
+    city.chunks.push_back(test::chunkOf(city::ChunkKind::ground, std::move(ground)));
+    city::Mesh tower;
+    test::addBox(tower, {-5, -5, 0}, {5, 5, 20}, 0);
+    city.chunks.push_back(test::chunkOf(city::ChunkKind::building, std::move(tower)));
+    RenderOptions options;
+    options.antialiasing = Antialiasing::none;
+    SceneRenderer renderer(city, models_, options);
+    scene_.vehicles.clear();
+    scene_.lighting.sunDirection = glm::normalize(glm::vec3(0, -1, 1));
+    const View view = lookAt({0, 10, 90}, {0, 10, 0}, 1.0, size_);  // from above, north up
+    const Image8 image = draw(renderer, view);
+    test::writePng("shadow", image);
+    const auto levelAt = [&](double x, double y) {
+        const glm::vec4 clip =
+            view.clipFromView * view.viewFromWorld * glm::vec4(glm::vec3(glm::dvec3(x, y, 0) - view.eye), 1);
+        return pixel(image, static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * 640.f),
+                     static_cast<int>((0.5f - clip.y / clip.w * 0.5f) * 360.f))
+            .g;
+    };
+    const int lit = levelAt(20, 10);
+    EXPECT_LT(levelAt(0, 15), lit - 40);
+    EXPECT_LT(levelAt(3.5, 22), lit - 40);
+    EXPECT_NEAR(levelAt(0, 28), lit, 12);  // beyond the shadow's end at y = 25
+    EXPECT_NEAR(levelAt(8, 15), lit, 12);
+    EXPECT_NEAR(levelAt(0, -12), lit, 12);
 }
 
 }  // namespace
