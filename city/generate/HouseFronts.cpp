@@ -75,13 +75,13 @@ void addShops(const Front& front, const HouseDesign& design, const Palette& pale
 
 void addEntrance(const Front& front, const HouseDesign& design, const Palette& palette, Random& random,
                  HouseMeshes& meshes) {
-    front.box(meshes.solid, {0, front.length, 0, 0.07f, front.base, front.base + 0.7f}, palette.granite,
+    front.box(meshes.details, {0, front.length, 0, 0.07f, front.base, front.base + 0.7f}, palette.granite,
               boxFront | boxTop);
     const float s = (static_cast<float>(random.integer(0, front.bays - 1)) + 0.5f) * front.bay;
-    front.box(meshes.solid, {s - 0.95f, s + 0.95f, 0, 0.12f, front.base, front.base + 3.0f},
+    front.box(meshes.details, {s - 0.95f, s + 0.95f, 0, 0.12f, front.base, front.base + 3.0f},
               design.style.trim);
     const std::uint32_t door = random.chance(0.6) ? palette.wood : palette.metalDark;
-    front.box(meshes.solid, {s - 0.7f, s + 0.7f, 0.12f, 0.16f, front.base, front.base + 2.7f}, door,
+    front.box(meshes.details, {s - 0.7f, s + 0.7f, 0.12f, 0.16f, front.base, front.base + 2.7f}, door,
               boxFront);
     front.box(meshes.details, {0, front.length, 0, 0.12f, front.floor - 0.15f, front.floor + 0.1f},
               design.style.trim, boxFront | boxTop | boxBottom);
