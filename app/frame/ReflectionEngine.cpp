@@ -56,7 +56,7 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
 
 std::size_t candidateCount(const ReflectionSettings& settings) {
     if (settings.method != ReflectionMethod::mem || settings.variant == MemVariant::paper) return 2;
-    return settings.quality == Quality::low ? 3 : settings.quality == Quality::medium ? 4 : 6;
+    return settings.quality == Quality::low ? 4 : settings.quality == Quality::medium ? 6 : 8;
 }
 
 reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize) {

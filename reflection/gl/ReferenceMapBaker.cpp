@@ -1,8 +1,6 @@
 #include "reflection/gl/ReferenceMapBaker.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -14,24 +12,6 @@ namespace reflection {
 namespace {
 
 constexpr int greatestSupersampling = 4;
-
-/// Samples within this ratio of the median count as one surface; a texel's samples on one plane differ by more only at
-/// less than about 2 degrees of grazing, where a texel is a smear anyway.
-constexpr float sameSurface = 1.25f;
-
-float representative(std::span<float> samples) {
-    std::sort(samples.begin(), samples.end());
-    const float median = samples[(samples.size() - 1) / 2];
-    if (std::isinf(median)) return median;
-    float sum = 0;
-    int count = 0;
-    for (float s : samples) {
-        if (s > median * sameSurface || s * sameSurface < median) continue;
-        sum += 1 / std::max(s, 1e-6f);
-        ++count;
-    }
-    return static_cast<float>(count) / sum;
-}
 
 }  // namespace
 
@@ -94,7 +74,7 @@ ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& cent
                     }
                 }
                 map.colour[out] = sum / static_cast<float>(count);
-                map.distance[out] = representative(std::span(samples.data(), count));
+                map.distance[out] = representativeDistance(std::span(samples.data(), count));
             }
         }
     }

@@ -31,17 +31,18 @@ StreetBox streetBoxOf(const PackedReferenceMap& map, const glm::vec3& forward) {
     box.forward = forward;
     const glm::vec3 left(-forward.y, forward.x, 0);
     std::array<std::vector<float>, 5> seen;
-    const int n = map.faceSize();
+    const PackedReferenceMap::Level& level = map.levelFor(32);
+    const int n = level.faceSize();
     const std::array<glm::vec3, 5> axes{forward, -forward, left, -left, glm::vec3(0, 0, -1)};
     for (int face = 0; face < 6; ++face) {
-        for (int y = 0; y < n; y += 4) {
-            for (int x = 0; x < n; x += 4) {
+        for (int y = 0; y < n; ++y) {
+            for (int x = 0; x < n; ++x) {
                 const glm::vec3 d = glm::normalize(cubeDirection(face, glm::vec2(x, y) + 0.5f, n));
                 for (std::size_t a = 0; a < axes.size(); ++a) {
                     const float along = glm::dot(d, axes[a]);
                     // Within 20 degrees of the axis, and above the horizon for the horizontal ones.
                     if (along < 0.94f || (a < 4 && d.z < 0)) continue;
-                    seen[a].push_back(std::min(map.distanceAt(face, x, y), 200.0f) * along);
+                    seen[a].push_back(std::min(level.distanceAt(face, x, y), 200.0f) * along);
                 }
             }
         }

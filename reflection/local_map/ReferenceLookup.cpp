@@ -26,10 +26,14 @@ using VI = hn::Vec<Int>;
 using VW = hn::Vec<Word>;
 using MF = hn::Mask<Float>;
 
+/// More than this many candidates are not asked.
+constexpr std::size_t mostCandidates = 16;
+
 struct MapView {
     const std::uint8_t* words;
     const std::uint16_t* chroma;
     int faceSize;
+    int chromaColumns;
     float radianceScale;
     float ox, oy, oz;
 };
@@ -119,11 +123,11 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
     Probe result;
     result.disagreement = hn::Sub(hn::Mul(p.depth, bilinear(nearness(w00), nearness(w10), nearness(w01), nearness(w11))), hn::Set(d, 1.0f));
     result.sum = bilinear(sum(w00), sum(w10), sum(w01), sum(w11));
-    const VI blocks = hn::Set(di, (map.faceSize + 2) / 2);
-    const VI last = hn::Sub(blocks, one);
-    const VI bx = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(u, half))), last);
-    const VI by = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half))), last);
-    result.chromaBlock = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, blocks), by), blocks), bx);
+    const VI columns = hn::Set(di, map.chromaColumns);
+    const VI rows = hn::Set(di, (map.faceSize + 2) / 2);
+    const VI bx = hn::Min(hn::ShiftRight<2>(hn::ConvertTo(di, hn::Add(u, half))), hn::Sub(columns, one));
+    const VI by = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half))), hn::Sub(rows, one));
+    result.chromaBlock = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, rows), by), columns), bx);
     return result;
 }
 
@@ -145,8 +149,30 @@ HWY_INLINE Colour colourOf(const MapView& map, VF sum, VI chromaBlock) {
     return {hn::Mul(all, red), hn::Mul(all, green), hn::Mul(all, blue)};
 }
 
-MapView viewOf(const Candidate& c) {
-    return {c.map->words(), c.map->chroma(), c.map->faceSize(), c.map->radianceScale(), c.offset.x, c.offset.y, c.offset.z};
+MapView viewOf(const Candidate& c, int localFaceSize) {
+    const PackedReferenceMap::Level& level = c.map->levelFor(localFaceSize);
+    return {level.words(), level.chroma(), level.faceSize(), level.chromaColumns(), c.map->radianceScale(),
+            c.offset.x, c.offset.y, c.offset.z};
+}
+
+/// Puts the maps first that see the point at about the scale at which the local map does. A map much farther from it than the
+/// local map's centre lacks detail; a much nearer one has more than the local map can hold, which would alias.
+void orderByScale(std::span<const Candidate> candidates, const glm::vec3& point, std::span<std::uint8_t> order,
+                  std::span<float> misfit) {
+    const float own = point.x * point.x + point.y * point.y + point.z * point.z;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const glm::vec3 o = candidates[k].offset;
+        const float x = point.x - o.x, y = point.y - o.y, z = point.z - o.z;
+        const float squared = x * x + y * y + z * z;
+        const float m = squared > own ? squared / own : own / squared;
+        std::size_t at = k;
+        for (; at > 0 && misfit[at - 1] > m; --at) {
+            misfit[at] = misfit[at - 1];
+            order[at] = order[at - 1];
+        }
+        misfit[at] = m;
+        order[at] = static_cast<std::uint8_t>(k);
+    }
 }
 
 /// The map's answer for the point t d of a ray.
@@ -164,12 +190,17 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
     const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
     const std::size_t base = out.faceOffset(face);
     const std::size_t texels = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-    const float step = 2.0f / static_cast<float>(n);
+    const float texelSize = 2.0f / static_cast<float>(n);
     const Int di;
     const VF sky = hn::Set(d, PackedReferenceMap::skyDepth);
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const VF agreement = hn::Set(d, options.agreement);
     const VF one = hn::Set(d, 1.0f);
+    candidates = candidates.first(std::min<std::size_t>(candidates.size(), mostCandidates));
+    std::array<MapView, mostCandidates> views;
+    std::array<std::uint8_t, mostCandidates> order;
+    std::array<float, mostCandidates> misfit;
+    for (std::size_t k = 0; k < candidates.size(); ++k) views[k] = viewOf(candidates[k], n);
     HWY_ALIGN float texelS[HWY_MAX_BYTES / sizeof(float)];
     HWY_ALIGN float texelT[HWY_MAX_BYTES / sizeof(float)];
 
@@ -177,8 +208,8 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
         const std::size_t count = std::min(lanes, texels - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const std::size_t texel = first + std::min(lane, count - 1);
-            texelS[lane] = (static_cast<float>(texel % static_cast<std::size_t>(n)) + 0.5f) * step - 1;
-            texelT[lane] = (static_cast<float>(texel / static_cast<std::size_t>(n)) + 0.5f) * step - 1;
+            texelS[lane] = (static_cast<float>(texel % static_cast<std::size_t>(n)) + 0.5f) * texelSize - 1;
+            texelT[lane] = (static_cast<float>(texel / static_cast<std::size_t>(n)) + 0.5f) * texelSize - 1;
         }
         const VF s = hn::Load(d, texelS), t = hn::Load(d, texelT);
         const auto along = [&](float major, float sAxis, float tAxis) {
@@ -199,20 +230,27 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
         }
         start = hn::Min(hn::Div(one, hn::Max(start, hn::Set(d, 1.0f / PackedReferenceMap::skyDepth))), sky);
 
+        // Neighbours share one order: that of the middle one.
+        const std::size_t middle = count / 2;
+        HWY_ALIGN float startLanes[HWY_MAX_BYTES / sizeof(float)];
+        hn::Store(start, d, startLanes);
+        orderByScale(candidates, startLanes[middle] * (f.major + texelS[middle] * f.sAxis + texelT[middle] * f.tAxis),
+                     std::span(order).first(candidates.size()), misfit);
+
         VF bestError = infinity, bestDepth = start;
         Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-        for (const Candidate& candidate : candidates) {
-            const MapView map = viewOf(candidate);
+        for (std::size_t k = 0; k < candidates.size(); ++k) {
+            const MapView& map = views[order[k]];
             const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox), hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
             VF ta = start;
             Probe at = probeAlong(map, dx, dy, dz, ta);
             VF qa = at.disagreement, sum = at.sum, error = hn::Abs(qa), depth = ta;
             VI block = at.chromaBlock;
             VF tb = ta, qb = qa;
-            for (int k = 1; k < options.lookups; ++k) {
+            for (int step = 1; step < options.lookups; ++step) {
                 if (hn::AllTrue(d, hn::Le(hn::Min(error, bestError), agreement))) break;
                 VF next;
-                if (k == 1) {
+                if (step == 1) {
                     // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray parameter is
                     // (d.C + (t d.d - d.C) / (1 + q)) / d.d.
                     const VF scale = hn::Div(one, hn::Max(hn::Add(qa, one), hn::Set(d, 1e-4f)));
@@ -272,7 +310,7 @@ void LookUpBlended(int face, const float* px, const float* py, const float* pz, 
     const std::size_t lanes = hn::Lanes(d);
     const std::size_t texels = static_cast<std::size_t>(out.faceSize) * static_cast<std::size_t>(out.faceSize);
     const std::size_t base = out.faceOffset(face);
-    const MapView mapA = viewOf(a), mapB = viewOf(b);
+    const MapView mapA = viewOf(a, out.faceSize), mapB = viewOf(b, out.faceSize);
     for (std::size_t first = 0; first < texels; first += lanes) {
         const std::size_t count = std::min(lanes, texels - first);
         HWY_ALIGN float rest[4][HWY_MAX_BYTES / sizeof(float)] = {};
@@ -322,11 +360,12 @@ void lookUpBlended(int face, std::span<const float> px, std::span<const float> p
 
 float storedDistance(const Candidate& candidate, const glm::vec3& point) {
     const CubePoint p = cubePoint(point - candidate.offset);
-    const int n = candidate.map->faceSize();
+    const PackedReferenceMap::Level& level = candidate.map->levels().front();
+    const int n = level.faceSize();
     const auto texel = [n](float st) {
         return std::clamp(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), 0, n - 1);
     };
-    return candidate.map->distanceAt(p.face, texel(p.st.x), texel(p.st.y));
+    return level.distanceAt(p.face, texel(p.st.x), texel(p.st.y));
 }
 
 }  // namespace reflection

@@ -30,8 +30,9 @@ struct LookupOptions {
 /// the ratio q(t) = m / M - 1 is a linear function of t (1 / M = n.w / c for the direction w = (X - C) / m, so m / M = n.(X - C) / c):
 /// the secant through two lookups meets the surface exactly, whatever the angle; the start is the projection of the candidate's own
 /// surface point onto the ray. q < 0: the candidate looks past X, so the heightfield was too fat; q > 0: something hides X from the
-/// candidate. The
-/// candidates are asked in the order given until one agrees; where none does the best agreement wins (the paper: the closest).
+/// candidate. Of up to
+/// 16 candidates those that see X at about the local map's own scale are asked first, until one agrees; where none does the best
+/// agreement wins (the paper: the closest).
 ///
 /// `reciprocal`: faceSize^2 values of 1/t0, 0 for sky (taken as a cube skyDepth away). Writes the face's texels of `map`. Needs at least one candidate, all of one
 /// face size. Cost: about lookups + 5 gathers a texel.

@@ -50,19 +50,47 @@ float finiteOrZero(float x) { return x > 0 ? std::min(x, std::numeric_limits<flo
 }  // namespace
 
 PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceScale)
-    : position_(map.position), faceSize_(map.faceSize), radianceScale_(radianceScale) {
-    if (faceSize_ < 4 || faceSize_ % 2 != 0)
+    : position_(map.position), radianceScale_(radianceScale) {
+    if (map.faceSize < 4 || map.faceSize % 2 != 0)
         throw std::invalid_argument("a reference map's face size must be even and at least 4");
     if (!(radianceScale > 0) || !std::isfinite(radianceScale))
         throw std::invalid_argument("a reference map's radiance scale must be finite and positive");
     if (map.colour.size() != map.texelCount() || map.distance.size() != map.texelCount())
         throw std::invalid_argument("a reference map must have six full faces of colour and distance");
+    levels_.emplace_back(map, radianceScale);
+    constexpr int coarsest = 16;
+    ReferenceMap coarse = map;
+    while (coarse.faceSize % 4 == 0 && coarse.faceSize / 2 >= coarsest) {
+        coarse = halved(coarse);
+        levels_.emplace_back(coarse, radianceScale);
+    }
+}
 
+const PackedReferenceMap::Level& PackedReferenceMap::levelFor(int localFaceSize) const {
+    std::size_t level = 0;
+    while (level + 1 < levels_.size() && levels_[level + 1].faceSize() >= 2 * localFaceSize) ++level;
+    return levels_[level];
+}
+
+std::size_t PackedReferenceMap::bytes() const {
+    std::size_t total = 0;
+    for (const Level& level : levels_) total += level.bytes();
+    return total;
+}
+
+std::size_t PackedReferenceMap::texelCount() const {
+    std::size_t total = 0;
+    for (const Level& level : levels_) total += level.texelCount();
+    return total;
+}
+
+PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
+    : faceSize_(map.faceSize), radianceScale_(radianceScale) {
     const int n = faceSize_;
     const int m = n + 2;
     const std::size_t bordered = 6 * static_cast<std::size_t>(m) * static_cast<std::size_t>(m);
     words_.assign((bordered * 5 + 1) / 2 + 4, 0);
-    chroma_.assign(bordered / 4 + 1, 0);
+    chroma_.assign(6 * static_cast<std::size_t>(chromaColumns()) * static_cast<std::size_t>(m / 2) + 1, 0);
 
     // Where a bordered texel takes its content from: its own face, or across an edge the texel that its direction meets.
     const auto source = [&](int face, int x, int y) {
@@ -84,11 +112,12 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
 
     for (int face = 0; face < 6; ++face) {
         for (int by = 0; by < m / 2; ++by) {
-            for (int bx = 0; bx < m / 2; ++bx) {
+            for (int bx = 0; bx < chromaColumns(); ++bx) {
                 float red = 0, blue = 0, all = 0;
-                for (int k = 0; k < 4; ++k) {
-                    const int x = 2 * bx + (k & 1) - 1;
-                    const int y = 2 * by + (k >> 1) - 1;
+                for (int k = 0; k < 8; ++k) {
+                    const int x = 4 * bx + (k & 3) - 1;
+                    const int y = 2 * by + (k >> 2) - 1;
+                    if (x > n) continue;
                     const std::size_t from = source(face, x, y);
                     const glm::vec3 c(finiteOrZero(map.colour[from].r), finiteOrZero(map.colour[from].g),
                                       finiteOrZero(map.colour[from].b));
@@ -116,44 +145,43 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
                 const auto share = [all](float part) {
                     return all > 0 ? static_cast<std::uint32_t>(std::lround(255.0f * part / all)) : 85u;
                 };
-                const std::size_t block =
-                    (static_cast<std::size_t>(face) * static_cast<std::size_t>(m / 2) + static_cast<std::size_t>(by)) *
-                        static_cast<std::size_t>(m / 2) +
-                    static_cast<std::size_t>(bx);
-                chroma_[block] = static_cast<std::uint16_t>(share(red) | (share(blue) << 8));
+                chroma_[chromaIndex(face, 4 * bx - 1, 2 * by - 1)] = static_cast<std::uint16_t>(share(red) | (share(blue) << 8));
             }
         }
     }
 }
 
-std::size_t PackedReferenceMap::borderedIndex(int face, int x, int y) const {
+std::size_t PackedReferenceMap::Level::borderedIndex(int face, int x, int y) const {
     const auto m = static_cast<std::size_t>(faceSize_ + 2);
     return (static_cast<std::size_t>(face) * m + static_cast<std::size_t>(y + 1)) * m + static_cast<std::size_t>(x + 1);
 }
 
-std::uint32_t PackedReferenceMap::wordAt(std::size_t index) const {
+std::size_t PackedReferenceMap::Level::chromaIndex(int face, int x, int y) const {
+    const auto rows = static_cast<std::size_t>(faceSize_ + 2) / 2;
+    return (static_cast<std::size_t>(face) * rows + static_cast<std::size_t>((y + 1) / 2)) * static_cast<std::size_t>(chromaColumns()) +
+           static_cast<std::size_t>((x + 1) / 4);
+}
+
+std::uint32_t PackedReferenceMap::Level::wordAt(std::size_t index) const {
     const std::size_t byte = index * 5 / 2;
     const std::uint32_t three = words_[byte] | (static_cast<std::uint32_t>(words_[byte + 1]) << 8) |
                                 (static_cast<std::uint32_t>(words_[byte + 2]) << 16);
     return (three >> (index % 2 == 0 ? 0 : 4)) & 0xfffffu;
 }
 
-float PackedReferenceMap::nearnessAt(int face, int x, int y) const {
+float PackedReferenceMap::Level::nearnessAt(int face, int x, int y) const {
     return std::bit_cast<float>(((wordAt(borderedIndex(face, x, y)) & nearnessMask) << 16) + (nearnessExponentBias << 23));
 }
 
-float PackedReferenceMap::distanceAt(int face, int x, int y) const {
+float PackedReferenceMap::Level::distanceAt(int face, int x, int y) const {
     const float nearness = nearnessAt(face, x, y);
     if (nearness <= 1 / skyDepth) return std::numeric_limits<float>::infinity();
     return glm::length(cubeDirection(face, glm::vec2(x, y) + 0.5f, faceSize_)) / nearness;
 }
 
-glm::vec3 PackedReferenceMap::colourAt(int face, int x, int y) const {
+glm::vec3 PackedReferenceMap::Level::colourAt(int face, int x, int y) const {
     const float sum = radianceScale_ * decodeSum(wordAt(borderedIndex(face, x, y)) >> nearnessBits);
-    const auto half = static_cast<std::size_t>(faceSize_ + 2) / 2;
-    const std::uint16_t shares =
-        chroma_[(static_cast<std::size_t>(face) * half + static_cast<std::size_t>((y + 1) / 2)) * half +
-                static_cast<std::size_t>((x + 1) / 2)];
+    const std::uint16_t shares = chroma_[chromaIndex(face, x, y)];
     const float red = sum * static_cast<float>(shares & 0xff) / 255.0f;
     const float blue = sum * static_cast<float>(shares >> 8) / 255.0f;
     return {red, std::max(0.0f, sum - red - blue), blue};

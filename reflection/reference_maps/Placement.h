@@ -14,8 +14,8 @@ struct PlacementOptions {
     float coverage = 0.98f;
     /// No driving position may be farther than this from its nearest map (metres): parallax, and with it the error of a
     /// stretched texel, grows with that distance. 0: coverage alone decides.
-    float spacing = 25;
-    float mapHeight = 1.6f;    ///< metres above the driving position
+    float spacing = 15;
+    float mapHeight = 2.5f;    ///< metres above the driving position
     float range = 150;         ///< a map is asked for surfaces up to this far (metres)
     float sampleSize = 2;      ///< surfaces are counted in cubes of this side (metres)
     int directions = 512;      ///< rays from each driving position that find its surfaces

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 namespace reflection {
@@ -17,5 +18,12 @@ struct ReferenceMap {
 
     std::size_t texelCount() const { return 6 * static_cast<std::size_t>(faceSize) * static_cast<std::size_t>(faceSize); }
 };
+
+/// One distance for several samples of a texel (sorts them): the harmonic mean, exact on planes, of those that belong to the surface
+/// of the median. Precondition: not empty.
+float representativeDistance(std::span<float> samples);
+
+/// The same map at half the size: mean colour and representative distance of each 2x2 texels. Precondition: even face size.
+ReferenceMap halved(const ReferenceMap& map);
 
 }  // namespace reflection
