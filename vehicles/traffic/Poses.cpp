@@ -89,7 +89,7 @@ void Traffic::State::updatePoses() {
             pose.heading = std::atan2(d.y, d.x);
             pose.pitch = std::atan2(d.z, run);
         }
-        const glm::dvec3 ahead = at(frontAxle + 0.4) - at(frontAxle - 0.4);
+        const glm::dvec3 ahead = at(frontAxle + 0.6) - f;
         pose.steering = std::hypot(ahead.x, ahead.y) > 1e-6
                             ? static_cast<float>(
                                   std::clamp(wrapped(std::atan2(ahead.y, ahead.x) - pose.heading), -0.7, 0.7))

@@ -107,13 +107,13 @@ class Reach {
         for (const VehicleKind& kind : kinds) {
             if (kind.tram != network_.ways[way].tram) continue;
             const double overhang = 0.5 * (kind.length - kind.wheelbase);
-            for (double front = kind.length; front <= along_.back(); front += 0.7) {
+            for (double front = kind.length; front <= along_.back(); front += 1.0) {
                 const glm::dvec2 f = point(front - overhang);
                 const glm::dvec2 r = point(front - overhang - kind.wheelbase);
                 const glm::dvec2 d = glm::distance(f, r) > 1e-6 ? glm::normalize(f - r) : glm::dvec2(1, 0);
                 const glm::dvec2 middle = 0.5 * (f + r);
                 const glm::dvec2 side(-d.y, d.x);
-                const int n = std::max(4, static_cast<int>(std::ceil(kind.length / 1.2)));
+                const int n = std::max(4, static_cast<int>(std::ceil(kind.length / 1.5)));
                 for (int k = 0; k <= n; ++k) {
                     const double x = kind.length * (static_cast<double>(k) / n - 0.5);
                     for (double y : {-0.5, 0.5}) {
@@ -136,11 +136,11 @@ class Reach {
     /// A point of the body that belongs near a place on the line: the nearest sample reaches at least that
     /// far.
     void mark(const glm::dvec2& p, double near) {
-        const auto lo = static_cast<std::size_t>(std::lower_bound(along_.begin(), along_.end(), near - 5) -
+        const auto lo = static_cast<std::size_t>(std::lower_bound(along_.begin(), along_.end(), near - 2.5) -
                                                  along_.begin());
         std::size_t best = ids_.size();
         double bestDistance = 1e18;
-        for (std::size_t i = lo; i < along_.size() && along_[i] < near + 5; ++i) {
+        for (std::size_t i = lo; i < along_.size() && along_[i] < near + 2.5; ++i) {
             const double d = glm::distance(line_[i], p);
             if (d < bestDistance) {
                 bestDistance = d;
