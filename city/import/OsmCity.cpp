@@ -7,8 +7,9 @@
 #include <string>
 
 #include "city/generate/ChunkCollector.h"
-#include "city/generate/Furniture.h"
+#include "city/generate/CityPlants.h"
 #include "city/generate/Palette.h"
+#include "city/generate/Random.h"
 #include "city/generate/SignalHeads.h"
 #include "city/import/OsmBuildings.h"
 #include "city/import/OsmFurniture.h"
@@ -105,14 +106,12 @@ CityModel loadOsmCity(const std::filesystem::path& file, const ImportOptions& op
 
     SignalLayout signals = layOutSignals(model.roads);
     model.signalHeads = std::move(signals.heads);
+    Random random(options.seed);
+    const Standing kinds = addPrototypes(palette, random, model);
     const FurnitureCounts furniture =
-        placeFurniture(data, streets.graph, ground, obstacles, palette, options.seed, model);
-    if (!signals.poles.empty()) {
-        const auto pole = static_cast<std::uint32_t>(model.prototypes.size());
-        model.prototypes.push_back(makeSignalPole(palette));
-        for (const SignalPole& p : signals.poles)
-            model.placements.push_back({pole, standing(p.foot, glm::vec2(p.facing))});
-    }
+        placeFurniture(data, streets.graph, ground, obstacles, kinds, options.seed, model);
+    for (const SignalPole& pole : signals.poles)
+        place(model, kinds.signalPole, pole.foot, glm::vec2(pole.facing));
     model.materials = materials.take();
     model.bounds.extend(glm::vec3(-data.halfSize, groundHeight));
     model.bounds.extend(glm::vec3(data.halfSize, groundHeight));

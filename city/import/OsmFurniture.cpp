@@ -1,14 +1,11 @@
 #include "city/import/OsmFurniture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 #include <optional>
 
-#include "city/generate/BroadleafTree.h"
 #include "city/generate/Furniture.h"
 #include "city/generate/Random.h"
 #include "city/import/OsmBuildings.h"
@@ -24,30 +21,6 @@ constexpr float rowSpacing = 8;   ///< metres between trees of a row
 constexpr float woodSpacing = 7;  ///< and of a wood
 constexpr std::size_t mostWoodTrees = 3000;
 constexpr float kerbHeight = 0.12f;  ///< furniture stands on pavements
-
-/// Kinds of trees: how they look and how high they grow, metres.
-constexpr std::size_t treeKinds = 3;
-
-std::array<Prototype, treeKinds> makeTrees(const Palette& palette, Random& random) {
-    constexpr std::array<std::size_t, 4> triangles{3000, 900, 250, 60};
-    std::array<Prototype, treeKinds> trees;
-    const std::array<const char*, treeKinds> names{"lime tree", "maple", "young tree"};
-    for (std::size_t k = 0; k < treeKinds; ++k) {
-        TreeShape shape;
-        shape.height = std::array{13.0f, 10.0f, 6.5f}[k];
-        shape.crownBase = std::array{3.0f, 2.6f, 2.2f}[k];
-        shape.crownRadius = std::array{3.8f, 4.2f, 1.8f}[k];
-        shape.trunkRadius = std::array{0.24f, 0.22f, 0.1f}[k];
-        shape.boughs = 10;
-        shape.clusters = std::array{220, 200, 90}[k];
-        shape.bark = palette.bark;
-        shape.foliage[0] = palette.foliageBright;
-        shape.foliage[1] = palette.foliageDark;
-        shape.foliage[2] = k == 1 ? palette.foliageWarm : palette.foliageDark;
-        trees[k] = makeBroadleafTree(names[k], shape, triangles, random.next());
-    }
-    return trees;
-}
 
 /// From a point to the nearest street axis.
 struct ToStreet {
@@ -104,9 +77,15 @@ glm::vec2 besideCarriageway(const StreetGraph& streets, glm::vec2 p) {
 
 class Furnisher {
   public:
-    Furnisher(const OsmData& data, const StreetGraph& streets, const Palette& palette, std::uint64_t seed,
+    Furnisher(const OsmData& data, const StreetGraph& streets, const Standing& kinds, std::uint64_t seed,
               CityModel& model)
-        : data_(data), streets_(streets), palette_(palette), seed_(seed), model_(model), random_(seed) {}
+        : data_(data), streets_(streets), kinds_(kinds), seed_(seed), model_(model) {
+        for (const auto* kind : {&kinds.avenueTrees, &kinds.parkTrees, &kinds.streetTrees})
+            for (const std::uint32_t tree : *kind) {
+                trees_.push_back(tree);
+                heights_.push_back(model.prototypes[tree].levels.front().mesh.bounds().max.z);
+            }
+    }
 
     FurnitureCounts run(const GroundPlan& ground, const std::vector<Footprint>& buildings) {
         for (const OsmPoint& point : data_.points) {
@@ -133,33 +112,23 @@ class Furnisher {
             const ToStreet street = toStreet(streets_, point.position);
             // Lamps far from streets stand in parks and squares and have no arm.
             const bool atStreet = street.distance < 14;
-            stand(atStreet ? prototype("street lamp", makeStreetLamp)
-                           : prototype("square lamp", makeSquareLamp),
-                  point.position, street.direction);
+            stand(atStreet ? kinds_.streetLamp : kinds_.squareLamp, point.position, street.direction);
             ++counts_.lamps;
         } else if (tags.is("amenity", "bench")) {
-            small(point, prototype("bench", makeBench));
+            small(point, kinds_.bench);
         } else if (tags.is("amenity", "waste_basket")) {
-            small(point, prototype("litter bin", makeLitterBin));
+            small(point, kinds_.bin);
         } else if (tags.is("barrier", "bollard")) {
-            small(point, prototype("bollard", makeBollard));
+            small(point, kinds_.bollard);
         } else if (tags.is("advertising", "column")) {
-            small(point, prototype("advertising column",
-                                   [](const Palette& palette) { return makeAdvertColumn(palette, 0); }));
+            small(point, kinds_.advertColumns[static_cast<std::size_t>(mixed(seed_, point.id) %
+                                                                       kinds_.advertColumns.size())]);
         }
     }
 
     void small(const OsmPoint& point, std::uint32_t which) {
         stand(which, point.position, toStreet(streets_, point.position).direction);
         ++counts_.others;
-    }
-
-    template <typename Make>
-    std::uint32_t prototype(const char* name, const Make& make) {
-        const auto [place, fresh] =
-            made_.try_emplace(name, static_cast<std::uint32_t>(model_.prototypes.size()));
-        if (fresh) model_.prototypes.push_back(make(palette_));
-        return place->second;
     }
 
     void stand(std::uint32_t which, glm::vec2 mapped, glm::vec2 front, float scale = 1) {
@@ -175,21 +144,17 @@ class Furnisher {
     }
 
     void plant(glm::vec2 foot, std::int64_t id, const OsmTags& tags) {
-        if (!treesMade_) {
-            for (Prototype& tree : makeTrees(palette_, random_)) {
-                heights_.push_back(tree.levels.front().mesh.bounds().max.z);
-                trees_.push_back(static_cast<std::uint32_t>(model_.prototypes.size()));
-                model_.prototypes.push_back(std::move(tree));
-            }
-            treesMade_ = true;
-        }
         const std::uint64_t hash = mixed(seed_, id);
         const std::optional<double> height = parseLength(tags.get("height"));
-        const double x = uniform(hash, 1);
-        std::size_t kind = x < 0.55 ? 0 : x < 0.85 ? 1 : 2;
-        float scale = static_cast<float>(0.8 + 0.4 * uniform(hash, 2));
+        auto kind = static_cast<std::size_t>(uniform(hash, 1) * static_cast<double>(trees_.size()));
+        auto scale = static_cast<float>(0.85 + 0.3 * uniform(hash, 2));
         if (height && *height > 1 && *height < 60) {
-            kind = *height < 7 ? 2 : kind % 2;
+            // The kind whose size fits best is scaled the rest of the way.
+            const auto misfit = [&](std::size_t k) {
+                return std::abs(heights_[k] - static_cast<float>(*height));
+            };
+            for (std::size_t k = 0; k < trees_.size(); ++k)
+                if (misfit(k) < misfit(kind)) kind = k;
             scale = static_cast<float>(*height) / heights_[kind];
         }
         const Turn turn(uniform(hash, 3));
@@ -245,23 +210,20 @@ class Furnisher {
 
     const OsmData& data_;
     const StreetGraph& streets_;
-    const Palette& palette_;
+    const Standing& kinds_;
     std::uint64_t seed_;
     CityModel& model_;
-    Random random_;
-    bool treesMade_ = false;
     std::vector<std::uint32_t> trees_;
     std::vector<float> heights_;
-    std::map<std::string, std::uint32_t> made_;
     FurnitureCounts counts_;
 };
 
 }  // namespace
 
 FurnitureCounts placeFurniture(const OsmData& data, const StreetGraph& streets, const GroundPlan& ground,
-                               const std::vector<Footprint>& buildings, const Palette& palette,
+                               const std::vector<Footprint>& buildings, const Standing& kinds,
                                std::uint64_t seed, CityModel& model) {
-    return Furnisher(data, streets, palette, seed, model).run(ground, buildings);
+    return Furnisher(data, streets, kinds, seed, model).run(ground, buildings);
 }
 
 }  // namespace city

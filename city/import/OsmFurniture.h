@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "city/generate/Palette.h"
+#include "city/generate/CityPlants.h"
 #include "city/import/OsmData.h"
 #include "city/import/OsmGround.h"
 #include "city/model/CityModel.h"
@@ -18,10 +18,11 @@ struct FurnitureCounts {
     std::size_t others = 0;  ///< benches, bins, bollards, advertising columns
 };
 
-/// Adds prototypes and placements of trees, lamps and small things to the model, turned towards the nearest
-/// street where they have a front. Trees strewn in woods keep out of buildings, streets and paths.
+/// Adds placements of trees, lamps and small things (`kinds`: their prototypes in the model), turned
+/// towards the nearest street where they have a front. Trees strewn in woods keep out of buildings, streets
+/// and paths.
 FurnitureCounts placeFurniture(const OsmData& data, const StreetGraph& streets, const GroundPlan& ground,
-                               const std::vector<Footprint>& buildings, const Palette& palette,
+                               const std::vector<Footprint>& buildings, const Standing& kinds,
                                std::uint64_t seed, CityModel& model);
 
 }  // namespace city
