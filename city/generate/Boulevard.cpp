@@ -90,15 +90,18 @@ std::vector<TourStop> boulevardTour(const BoulevardPlan& plan) {
     };
     const float start = std::max(-plan.ring + 26, stop - 190);
     add(start, 1.5f, 8);
+    bool high = false;  // over the last crossing already on the way up to the square
     for (const float x : crossings) {
-        if (x < start + 40 || x > stop - 42) continue;
+        if (x < start + 40 || x > square.x - 20) continue;
         add(x - 34, 1.5f, 9);
         add(x - 16, 5, 9);
         add(x, 6, 9);
+        high = x + 34 > stop;
+        if (high) break;
         add(x + 16, 5, 9);
         add(x + 34, 1.5f, 8);
     }
-    add(stop - 6, 1.7f, 6);
+    if (!high) add(stop - 6, 1.7f, 6);
     const float front = houseLine(StreetRank::avenue);
     keys.push_back({{square.x - 14, y + 2, 5.5f}, {square.x, front, 2}, 6});
     keys.push_back({{square.x - 5, front - 5, 7}, {square.x + 1, square.y - 11, 2.5f}, 6});

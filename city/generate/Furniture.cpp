@@ -150,13 +150,24 @@ Prototype makeFountain(const Palette& p) {
     addLathe(m, {0, 0, 0}, basin, 32, p.granite, 2);
     const std::array<glm::vec2, 2> water{{{6.4f, 0.45f}, {0, 0.45f}}};
     addLathe(m, {0, 0, 0}, water, 32, p.water, 4);
-    const std::array<glm::vec2, 7> lower{
-        {{1.1f, 0.3f}, {0.7f, 0.9f}, {0.5f, 1.6f}, {0.6f, 1.9f}, {2.3f, 2.4f}, {2.45f, 2.6f}, {2.3f, 2.6f}}};
+    const std::array<glm::vec2, 8> lower{{{1.1f, 0.3f},
+                                          {0.7f, 0.9f},
+                                          {0.5f, 1.6f},
+                                          {0.6f, 1.9f},
+                                          {2.3f, 2.4f},
+                                          {2.45f, 2.6f},
+                                          {2.3f, 2.6f},
+                                          {2.3f, 2.5f}}};
     addLathe(m, {0, 0, 0}, lower, 24, p.granite, 2);
     const std::array<glm::vec2, 2> lowerWater{{{2.3f, 2.55f}, {0, 2.55f}}};
     addLathe(m, {0, 0, 0}, lowerWater, 24, p.water, 4);
-    const std::array<glm::vec2, 6> upper{
-        {{0.4f, 2.5f}, {0.25f, 3.3f}, {0.35f, 3.5f}, {1.2f, 3.8f}, {1.3f, 3.95f}, {1.2f, 3.95f}}};
+    const std::array<glm::vec2, 7> upper{{{0.4f, 2.5f},
+                                          {0.25f, 3.3f},
+                                          {0.35f, 3.5f},
+                                          {1.2f, 3.8f},
+                                          {1.3f, 3.95f},
+                                          {1.2f, 3.95f},
+                                          {1.2f, 3.85f}}};
     addLathe(m, {0, 0, 0}, upper, 16, p.granite, 2);
     const std::array<glm::vec2, 5> crest{
         {{1.2f, 3.92f}, {0.25f, 3.92f}, {0.2f, 4.6f}, {0.32f, 4.8f}, {0, 5.1f}}};

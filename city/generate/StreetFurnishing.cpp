@@ -88,8 +88,8 @@ void furnishStreetSide(const SideFrame& side, bool trees, bool lamps, const Pale
         const int count = std::max(1, static_cast<int>(side.length / 27));
         const float step = side.length / static_cast<float>(count);
         for (int k = 0; k < count; ++k)
-            place(model, standing.streetLamp,
-                  side.at((static_cast<float>(k) + 0.5f) * step + 2.5f, lampRow), -side.away);
+            place(model, standing.streetLamp, side.at((static_cast<float>(k) + 0.5f) * step + 2.5f, lampRow),
+                  -side.away);
     }
     constexpr float bollardStep = 4;
     for (int k = 0; k < static_cast<int>((side.length - 3) / bollardStep); ++k) {
