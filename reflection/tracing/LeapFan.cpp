@@ -38,7 +38,8 @@ struct FanStart {
 };
 
 constexpr int missed = 16;
-constexpr int undecided = 17;
+constexpr int undecided = 17;              ///< left to leapWalk
+constexpr std::size_t stragglerShare = 6;  ///< of the lanes: when no more are busy, the vector is given up
 
 /// entryParameter for the hits of one vector of rays. `a` and `b` are cells passed, `column` is wanted where
 /// face is top.
@@ -171,6 +172,7 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
         active = hn::AndNot(which, active);
     };
 
+    const std::size_t fewLanes = hn::Lanes(f) / stragglerShare;
     // All rays start in one cell: four entries, one for each quadrant.
     const std::size_t startCell = grid.index(fan.i0, fan.j0);
     const auto startEntry = [&](std::size_t q) {
@@ -183,7 +185,8 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
         const VF z = hn::Add(oz, hn::Mul(t, dz));
         const VF vertical = hn::Add(vertical0, hn::Mul(vertical1, t));
         const VI own = hn::BitCast(i, hn::ShiftRight<16>(hn::BitCast(u, entry)));
-        const VI lifted = hn::Add(own, hn::Mul(hn::And(hn::ShiftRight<12>(entry), hn::Set(i, 15)), lift));
+        const VI lifts = hn::And(hn::ShiftRight<12>(entry), hn::Set(i, 15));
+        const VI lifted = hn::Add(own, hn::Mul(hn::Mul(lifts, lifts), lift));
         VF level = hn::Add(levelBase, hn::Mul(hn::ConvertTo(f, lifted), levelStep));
         VI aheadA = hn::And(entry, hn::Set(i, 63));
         VI aheadB = hn::And(hn::ShiftRight<6>(entry), hn::Set(i, 63));
@@ -271,7 +274,11 @@ bool walkVector(const FanStart& fan, const float* directionX, const float* direc
         lastFace = hn::IfThenElse(byA, hn::Set(f, static_cast<float>(EntryFace::x)),
                                   hn::Set(f, static_cast<float>(EntryFace::y)));
         justSank = descends;
-        if (hn::AllFalse(f, active)) break;
+        // Few rays need many steps: let the single walk finish them, not the whole vector.
+        if (hn::CountTrue(f, active) <= fewLanes) {
+            settle(active, undecided);
+            break;
+        }
         entry =
             hn::BitCast(i, hn::GatherIndex(u, grid.open.entries.data(), hn::Add(indexOf(a, b), quadrant)));
     }
@@ -311,7 +318,9 @@ void fan(const TracedGrid& grid, const glm::vec3& origin, const float* dx, const
         if (walkVector(start, d[0], d[1], d[2], faces, parameters))
             for (std::size_t k = 0; k < used; ++k)
                 if (faces[k] == undecided)
-                    parameters[k] = exactAnswer(grid, {origin, {d[0][k], d[1][k], d[2][k]}});
+                    parameters[k] = leapWalk(grid, {origin, {d[0][k], d[1][k], d[2][k]}},
+                                             std::numeric_limits<float>::max())
+                                        .t;
         std::copy_n(parameters, used, t + first);
     }
 }

@@ -124,7 +124,8 @@ TraceResult leapWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         const int own = static_cast<int>(entry >> 16);
         const int width = static_cast<int>(entry & 63);
         const float ownHeight = open.levelHeight(own);
-        const float level = open.levelHeight(own + static_cast<int>((entry >> 12) & 15) * open.lift);
+        const int lift = static_cast<int>((entry >> 12) & 15);
+        const float level = open.levelHeight(own + lift * lift * open.lift);
         const bool leap = (z > level + 4 * vertical) & (width != 0);
         float floor = level;
         if (!leap) {

@@ -17,6 +17,12 @@ namespace {
 /// end it, but a ray that sinks below the level walks cell by cell.
 constexpr float bandMetres = 0.25f;
 constexpr float bandPerCellSize = 0.25f;
+/// On bumpy ground (pitched roofs, crowns of trees) such rectangles shrink to a few cells. There a wider band
+/// serves better, for the rays that pass well above.
+constexpr float wideBand = 2.0f;
+/// The wider band is taken where its leaps are more than this many times as long.
+constexpr int worthWidening = 2;
+constexpr int small = 8;  ///< cells; larger ones are left as they are
 constexpr int longest = OpenRectangles::longest;
 constexpr int highestLevel = 65534;
 constexpr int endless = 65535;  ///< a column without a top
@@ -76,6 +82,34 @@ void findRuns(const std::uint16_t* levels, int width, int step, int band, Run* r
     }
 }
 
+struct Rectangle {
+    int width;
+    int height;
+    int level;
+};
+
+/// Of all rectangles in the staircase of runs, the one with the longest leap averaged over directions: w h /
+/// (w + h) ranks them nearly as the integral of min(w / cos, h / sin) does. `stride` leads to the next row.
+Rectangle bestRectangle(const std::uint16_t* levels, const Run* runs, std::ptrdiff_t corner,
+                        std::ptrdiff_t stride, int rows, int band) {
+    const int limit = levels[corner] + band;
+    int narrowest = longest;
+    int highest = levels[corner];
+    Rectangle best{1, 1, levels[corner]};
+    std::ptrdiff_t at = corner;
+    for (int k = 1; k <= rows; ++k, at += stride) {
+        if (levels[at] > limit || runs[at].highest >= endless) break;
+        narrowest = std::min<int>(narrowest, runs[at].length);
+        highest = std::max<int>(highest, runs[at].highest);
+        const int area = best.width * best.height;
+        const int sum = best.width + best.height;
+        if (narrowest * k * sum > area * (narrowest + k)) best = {narrowest, k, highest};
+        // Even with all rows left, nothing this narrow can win any more.
+        if (narrowest * rows * sum <= area * (narrowest + rows)) break;
+    }
+    return best;
+}
+
 }  // namespace
 
 OpenRectangles findOpenRectangles(const TracedGrid& grid) {
@@ -93,11 +127,13 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     const int height = grid.height;
     const float bandHeight = std::max(bandMetres, bandPerCellSize * static_cast<float>(grid.cellSize));
     const int band = static_cast<int>(std::min(bandHeight / result.step, 60000.0f));
+    const int wide = std::max(band, static_cast<int>(std::min(wideBand / result.step, 30000.0f)));
     std::vector<Run> runs(levels.size());
+    std::vector<Run> wideRuns(levels.size());
     // A rectangle's level is at most two bands above its corner: the limit of a row's own run, which starts
     // within the band.
     constexpr int lifts = 15;
-    result.lift = std::max(1, (2 * band + lifts - 1) / lifts);
+    result.lift = std::max(1, (2 * wide + lifts * lifts - 1) / (lifts * lifts));
     result.entries = LargeArray<OpenRectangles::Entry>(4 * grid.columns.size());
     const auto rowStart = [&](int j) {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
@@ -109,8 +145,10 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
         OpenRectangles::Entry* entries =
             result.entries.data() + static_cast<std::size_t>(q) * grid.columns.size();
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
-            for (int j = range.begin(); j != range.end(); ++j)
+            for (int j = range.begin(); j != range.end(); ++j) {
                 findRuns(&levels[rowStart(j)], width, stepX, band, &runs[rowStart(j)]);
+                findRuns(&levels[rowStart(j)], width, stepX, wide, &wideRuns[rowStart(j)]);
+            }
         });
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
             for (int j = range.begin(); j != range.end(); ++j) {
@@ -119,33 +157,20 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
                     const std::size_t corner = rowStart(j) + static_cast<std::size_t>(i);
                     // Entry 0 for endless and empty columns.
                     if (levels[corner] == endless || !std::isfinite(grid.column(i, j))) continue;
-                    const int limit = levels[corner] + band;
-                    // Of all rectangles in the staircase of runs, the one with the longest leap averaged over
-                    // directions: w h / (w + h) ranks them nearly as the integral of min(w / cos, h / sin)
-                    // does.
-                    int narrowest = longest;
-                    int highest = levels[corner];
-                    int bestWidth = 1, bestHeight = 1, bestLevel = levels[corner];
                     const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(stepY) * width;
-                    std::ptrdiff_t at = static_cast<std::ptrdiff_t>(corner);
-                    for (int k = 1; k <= rows; ++k, at += stride) {
-                        const std::size_t here = static_cast<std::size_t>(at);
-                        if (levels[here] > limit || runs[here].highest >= endless) break;
-                        narrowest = std::min<int>(narrowest, runs[here].length);
-                        highest = std::max<int>(highest, runs[here].highest);
-                        const int best = bestWidth * bestHeight;
-                        const int bestSum = bestWidth + bestHeight;
-                        if (narrowest * k * bestSum > best * (narrowest + k)) {
-                            bestWidth = narrowest;
-                            bestHeight = k;
-                            bestLevel = highest;
-                        }
-                        // Even with all rows left, nothing this narrow can win any more.
-                        if (narrowest * rows * bestSum <= best * (narrowest + rows)) break;
+                    const auto from = static_cast<std::ptrdiff_t>(corner);
+                    Rectangle best = bestRectangle(levels.data(), runs.data(), from, stride, rows, band);
+                    if (std::min(best.width, best.height) < small) {
+                        const Rectangle wider =
+                            bestRectangle(levels.data(), wideRuns.data(), from, stride, rows, wide);
+                        if (wider.width * wider.height * (best.width + best.height) >
+                            worthWidening * best.width * best.height * (wider.width + wider.height))
+                            best = wider;
                     }
-                    const int lift = (bestLevel - levels[corner] + result.lift - 1) / result.lift;
-                    entries[grid.index(i, j)] = static_cast<OpenRectangles::Entry>(bestWidth) |
-                                                static_cast<OpenRectangles::Entry>(bestHeight) << 6 |
+                    int lift = 0;
+                    while (levels[corner] + lift * lift * result.lift < best.level) ++lift;
+                    entries[grid.index(i, j)] = static_cast<OpenRectangles::Entry>(best.width) |
+                                                static_cast<OpenRectangles::Entry>(best.height) << 6 |
                                                 static_cast<OpenRectangles::Entry>(lift) << 12 |
                                                 static_cast<OpenRectangles::Entry>(levels[corner]) << 16;
                 }

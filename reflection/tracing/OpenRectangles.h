@@ -19,14 +19,14 @@ struct TracedGrid;
 /// (TracedGrid::index).
 struct OpenRectangles {
     /// Bits 0-5: cells along x (0: no leap, and the level says nothing: ask the column), 6-11: cells along y,
-    /// 12-15: the rectangle's level above the cell's, in `lifts`, 16-31: the cell's own level. Levels are
-    /// rounded up.
+    /// 12-15: k, where the rectangle's level is k * k * lift above the cell's, 16-31: the cell's own level.
+    /// Levels are rounded up.
     using Entry = std::uint32_t;
     static constexpr int longest = 63;
 
     float base = 0;         ///< metres
     float step = 1;         ///< metres a level
-    std::int32_t lift = 1;  ///< levels
+    std::int32_t lift = 1;  ///< levels: fine steps near the ground, for kerbs, coarse ones above
     /// Four times the grid's cells: one after the other the quadrants (bit 0: towards -x, bit 1: towards -y),
     /// each in the order of the grid's columns.
     LargeArray<Entry> entries;
