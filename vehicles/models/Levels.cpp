@@ -280,7 +280,10 @@ city::Mesh withoutThinPieces(const city::Mesh& mesh, float thickness) {
     std::map<std::uint32_t, std::pair<float, std::uint32_t>> replacement;
     for (const auto& [who, length] : shared) {
         const auto [piece, other] = who;
-        if (2 * area[piece] >= thickness * outline[piece]) continue;
+        // Lamps tell from afar where a vehicle is going: they are given up later than all else.
+        const bool lamp = surface[piece] == static_cast<std::uint32_t>(Surface::headLamp) ||
+                          surface[piece] == static_cast<std::uint32_t>(Surface::tailLamp);
+        if (2 * area[piece] >= (lamp ? 0.5f : 1.0f) * thickness * outline[piece]) continue;
         auto& best = replacement[piece];
         if (length > best.first) best = {length, other};
     }
@@ -312,7 +315,7 @@ void makeLevels(VehicleModel& model, const LevelPlan& plan) {
         bool rim;
     };
     static constexpr Step steps[3] = {
-        {0.012f, 0.0f, 0, false}, {0.05f, 0.22f, 8, true}, {0.12f, 0.36f, 6, false}};
+        {0.012f, 0.0f, 0, false}, {0.10f, 0.22f, 8, true}, {0.12f, 0.36f, 6, false}};
     float error = 0;
     for (int k = 0; k < 3; ++k) {
         const Step& step = steps[k];
@@ -323,9 +326,13 @@ void makeLevels(VehicleModel& model, const LevelPlan& plan) {
         const std::size_t target =
             std::max<std::size_t>(plan.triangles[k] > wheels ? plan.triangles[k] - wheels : 0, 100);
         if (finest.triangleCount() <= target) continue;
-        city::Mesh body = withoutThinPieces(withoutSmallPieces(finest, step.small, k < 2), step.thin);
-        city::Mesh coarse = simplified(body, target);
-        if (coarse.triangleCount() > target + target / 5) coarse = simplifiedAcross(body, target);
+        city::Mesh body = withoutSmallPieces(finest, step.small, k < 2);
+        // Seals first, so that what they surround is then joined to what lies beyond them.
+        if (far) body = withoutThinPieces(body, steps[0].thin * 2);
+        body = withoutThinPieces(body, step.thin);
+        // Far off, borders of surfaces follow the shape's triangles: kept as borders, they would use up the
+        // few there are.
+        city::Mesh coarse = far ? simplifiedAcross(body, target) : simplified(body, target);
         if (far) coarse = withWheels(coarse, model, wheel);
         optimise(coarse);
         if (coarse.empty() || coarse.triangleCount() >= model.levels.back().body.triangleCount()) continue;
