@@ -7,6 +7,8 @@
 namespace app {
 
 Command tourCommand();
+Command bakeCommand();
+Command benchCommand();
 Command exportCommand();
 Command infoCommand();
 

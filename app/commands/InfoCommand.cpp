@@ -5,7 +5,11 @@
 #include <glm/detail/setup.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <iomanip>
 #include <iostream>
+#include <map>
+#include <sstream>
 #include <thread>
 
 #include "app/commands/Commands.h"
@@ -65,6 +69,43 @@ void printOpenGl() {
     print("limits", contextLimits());
 }
 
+void printCity(const Options& options) {
+    const city::CityModel city = loadCityOf(options);
+    std::size_t buildings = 0;
+    for (const city::Chunk& chunk : city.chunks) buildings += chunk.kind == city::ChunkKind::building;
+    std::size_t carLanes = 0, tramLanes = 0;
+    double carMetres = 0, tramMetres = 0;
+    for (const city::Lane& lane : city.roads.lanes) {
+        const bool tram = lane.kind == city::LaneKind::tram;
+        (tram ? tramLanes : carLanes) += 1;
+        (tram ? tramMetres : carMetres) += laneLength(lane);
+    }
+    const auto signalled =
+        std::count_if(city.roads.junctions.begin(), city.roads.junctions.end(),
+                      [](const city::Junction& junction) { return !junction.signal.phases.empty(); });
+    const glm::vec3 size = city.bounds.empty() ? glm::vec3(0) : city.bounds.size();
+    Rows rows{{"size", fixed(size.x, 0) + " x " + fixed(size.y, 0) + " m, " + fixed(size.z, 0) + " m high"},
+              {"triangles", std::to_string(city.triangleCount())},
+              {"building chunks",
+               std::to_string(buildings) + " of " + std::to_string(city.chunks.size()) + " chunks"},
+              {"car lanes", std::to_string(carLanes) + ", " + fixed(carMetres / 1000, 1) + " km"},
+              {"tram lanes", std::to_string(tramLanes) + ", " + fixed(tramMetres / 1000, 1) + " km"},
+              {"junctions", std::to_string(city.roads.junctions.size()) + ", " + std::to_string(signalled) +
+                                " with signals"}};
+    std::map<std::string, std::size_t> things;
+    for (const city::Placement& placement : city.placements)
+        ++things[city.prototypes[placement.prototype].name];
+    for (const auto& [name, count] : things) rows.emplace_back(name, std::to_string(count));
+    if (city.frame)
+        rows.emplace_back(
+            "origin", fixed(city.frame->latitude(), 5) + " N, " + fixed(city.frame->longitude(), 5) + " E");
+    std::ostringstream hash;
+    hash << std::hex << std::setw(16) << std::setfill('0') << city.contentHash();
+    rows.emplace_back("content hash", hash.str());
+    print(city.name.empty() ? options.city : city.name, rows);
+    for (const std::string& note : city.notes) std::cout << "  note: " << note << "\n";
+}
+
 }  // namespace
 
 Command infoCommand() {
@@ -73,10 +114,12 @@ Command infoCommand() {
             .groups = cityOptions | cityIsOptional,
             .benches = {},
             .run = [](const Options& options) {
-                if (options.city.empty()) {
-                    printMachine();
-                    printOpenGl();
+                if (!options.city.empty()) {
+                    printCity(options);
+                    return exitOk;
                 }
+                printMachine();
+                printOpenGl();
                 return exitOk;
             }};
 }

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <glm/geometric.hpp>
+#include <stdexcept>
 
 #include "app/report/Timing.h"
 #include "city/generate/Boulevard.h"
 #include "city/generate/PaperCity.h"
 #include "city/import/LoadCity.h"
-#ifdef MIRRORSTREET_VEHICLE_FILES
 #include "vehicles/import/LoadVehicle.h"
-#endif
 #include "vehicles/models/Fleet.h"
 
 namespace app {
@@ -63,7 +61,6 @@ Scene loadScene(const Options& options) {
     scene.city = loadCityOf(options);
     scene.models = vehicles::builtInFleet();
     scene.kinds = vehicles::kindsOf(scene.models);
-#ifdef MIRRORSTREET_VEHICLE_FILES
     if (options.car) {
         std::vector<vehicles::VehicleModel> models{
             vehicles::loadVehicle(*options.car, static_cast<float>(options.carLength))};
@@ -72,9 +69,6 @@ Scene loadScene(const Options& options) {
         scene.models = std::move(models);
         scene.kinds = vehicles::kindsOf(scene.models);
     }
-#else
-    if (options.car) throw std::runtime_error("this build reads no vehicle files; leave out --car.");
-#endif
     const double latitude = scene.city.frame ? scene.city.frame->latitude() : 50;
     scene.lighting = lightingAt(options.hour, latitude);
     return scene;

@@ -1,0 +1,54 @@
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+
+#include "app/commands/Commands.h"
+#include "app/commands/LoadScene.h"
+#include "app/commands/PreparedReflections.h"
+#include "app/display/OffscreenContext.h"
+#include "app/render/SceneRenderer.h"
+#include "app/report/Table.h"
+
+namespace app {
+
+namespace {
+
+int run(const Options& options) {
+    const OffscreenContext context;
+    const Scene scene = loadScene(options);
+    SceneRenderer renderer(scene.city, scene.models, {});
+    FrameScene empty;
+    empty.lighting = scene.lighting;
+    empty.signalColours.assign(scene.city.signalHeads.size(), vehicles::SignalColour::red);
+    renderer.prepare(empty);
+    PreparationOptions preparation;
+    preparation.cell = static_cast<float>(options.cell);
+    preparation.quiet = options.quiet;
+    const PreparedReflections prepared =
+        prepareReflections(scene.city, scene.lighting, renderer, preparation);
+
+    std::size_t bytes = 0;
+    for (const auto& map : prepared.maps) bytes += map.bytes();
+    std::cout << "reference maps  " << prepared.maps.size() << " (" << prepared.loaded << " from the cache, "
+              << prepared.baked << " drawn)\n"
+              << "coverage        " << fixed(100 * prepared.coverage, 2)
+              << " % of the surface visible from the lanes\n"
+              << "memory          " << byteSize(static_cast<double>(bytes)) << "\n"
+              << "cache           " << prepared.folder.string() << "\n";
+    if (prepared.complete) return exitOk;
+    spdlog::warn("interrupted: the maps that are finished stay in the cache; run bake again for the rest");
+    return exitFailed;
+}
+
+}  // namespace
+
+Command bakeCommand() {
+    return {.name = "bake",
+            .summary =
+                "places and draws the city's reference maps into the cache; goes on where it was interrupted",
+            .groups = cityOptions | reflectionOptions | pictureOptions,
+            .benches = {},
+            .run = run};
+}
+
+}  // namespace app
