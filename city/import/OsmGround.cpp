@@ -143,7 +143,10 @@ void planSea(const OsmData& data, GroundPlan& plan) {
                 parts = true;
             }
         }
-        if (!parts) ++plan.openCoastlines;
+        const bool within = std::any_of(line.begin(), line.end(), [&](glm::vec2 p) {
+            return std::abs(p.x) < data.halfSize.x && std::abs(p.y) < data.halfSize.y;
+        });
+        if (!parts && within) ++plan.openCoastlines;
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (!isSea[f]) continue;

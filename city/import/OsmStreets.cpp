@@ -249,7 +249,7 @@ StreetPlan planStreets(const OsmData& data) {
         if (!isSignal(point.tags)) continue;
         if (builder.signal(point.id))
             ++plan.signals;
-        else
+        else if (std::abs(point.position.x) < data.halfSize.x && std::abs(point.position.y) < data.halfSize.y)
             ++plan.strandedSignals;
     }
     plan.graph = std::move(builder.graph());
