@@ -13,9 +13,9 @@ glm::vec3 skyRadiance(const Lighting& lighting, const glm::vec3& direction) {
     const float low = 1 - up;
     const float low2 = low * low;
     // Deep overhead, pale and brighter towards the horizon, where the air is thick.
-    const glm::vec3 zenith = mean * glm::vec3(0.62f, 0.74f, 0.92f);
+    const glm::vec3 zenith = mean * glm::vec3(0.6f, 0.86f, 1.2f);
     const float grey = 0.33f * (mean.r + mean.g + mean.b);
-    const glm::vec3 horizon = glm::mix(mean, glm::vec3(grey), 0.65f) * 1.75f;
+    const glm::vec3 horizon = glm::mix(mean, glm::vec3(grey), 0.55f) * 1.9f;
     glm::vec3 radiance = glm::mix(zenith, horizon, low2 * low2);
 
     // Light scattered forwards around the sun: a wide and a narrow lobe, stronger in hazy air.

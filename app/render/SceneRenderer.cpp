@@ -14,7 +14,9 @@
 #include "app/render/CubeFaces.h"
 #include "app/render/FrameUniforms.h"
 #include "app/render/ShadowMap.h"
+#include "app/render/SignalLamps.h"
 #include "app/render/VehiclePass.h"
+#include "app/render/VehicleShadows.h"
 #include "app/render/ViewTarget.h"
 #include "reflection/gl/Texture.h"
 
@@ -71,6 +73,7 @@ struct SceneRenderer::Impl {
           cityPass(city),
           shadow(cityPass.geometry().bounds(), shadowSize(cityPass.geometry().bounds())),
           vehiclePass(models),
+          signalLamps(city.signalHeads),
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
           viewTarget(renderOptions.antialiasing) {
@@ -134,6 +137,8 @@ struct SceneRenderer::Impl {
     CityPass cityPass;
     ShadowMap shadow;
     VehiclePass vehiclePass;
+    VehicleShadows vehicleShadows;
+    SignalLamps signalLamps;
     gl::Buffer frameUniforms;
     gl::VertexArray emptyArray;
     std::array<gl::Program, 2> skyPrograms;
@@ -183,11 +188,14 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
         my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
                             {&reflections.textures, reflections.slots}, levelTolerance);
     const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
+    const std::uint32_t lampCalls = my.signalLamps.draw(pass, PassTarget::view, my.signalColours);
+    const std::uint32_t shadowCalls =
+        my.options.shadows ? my.vehicleShadows.draw(pass, my.vehiclePass.geometry(), my.poses, my.chosen) : 0;
     my.drawSky(pass, PassTarget::view);
 
     my.viewTarget.finish(framebuffer);
 
-    my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + 1;
+    my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + lampCalls + shadowCalls + 1;
     my.counters.triangles = vehicles.triangles + city.triangles;
     my.counters.chunksDrawn = city.chunksDrawn;
     my.counters.chunksCulled = city.chunksCulled;
@@ -220,6 +228,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
             my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, levelTolerance);
         }
         if (content.city) my.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
+        if (content.vehicles) my.signalLamps.draw(pass, PassTarget::cube, my.signalColours);
         my.drawSky(pass, PassTarget::cube);
     }
 }

@@ -4,9 +4,9 @@ vec3 skyRadiance(vec3 direction) {
     float up = max(direction.z, 0.0);
     float low = 1.0 - up;
     float low2 = low * low;
-    vec3 zenith = mean * vec3(0.62, 0.74, 0.92);
+    vec3 zenith = mean * vec3(0.6, 0.86, 1.2);
     float grey = 0.33 * (mean.r + mean.g + mean.b);
-    vec3 horizon = mix(mean, vec3(grey), 0.65) * 1.75;
+    vec3 horizon = mix(mean, vec3(grey), 0.55) * 1.9;
     vec3 radiance = mix(zenith, horizon, low2 * low2);
 
     float cosine = dot(direction, frame.sunDirection.xyz);

@@ -20,7 +20,12 @@ void main() {
     float fresnel = coat.x + (1.0 - coat.x) * coat.y * grazing2 * grazing2 * grazing;  // Schlick
     vec3 reflected = 2.0 * dot(n, towardsEye) * n - towardsEye;
 #ifdef REFLECTIVE
-    vec3 mirrored = textureLod(localMap, vec4(reflected, mapLayer), 0.0).rgb;
+    // The level whose texels are as wide as what the pixel reflects: derivatives of the reflected direction, not of face coordinates, which
+    // jump at edges. A face of n texels spans two units.
+    vec3 across = max(abs(dFdx(reflected)), abs(dFdy(reflected)));
+    float wide = max(max(across.x, across.y), across.z) * 0.5 * float(textureSize(localMap, 0).x);
+    float level = max(log2(max(wide, 1e-4)), coat.x > 0.3 && coat.x < 0.5 ? 2.0 : 0.0);  // rims are brushed
+    vec3 mirrored = textureLod(localMap, vec4(reflected, mapLayer), level).rgb;
 #else
     // No map: the sky's mean above, the ground's below.
     float up = clamp(reflected.z * 2.0 + 0.5, 0.0, 1.0);

@@ -1,0 +1,50 @@
+#include "app/render/VehicleShadows.h"
+
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+
+namespace app {
+
+namespace gl = reflection::gl;
+
+VehicleShadows::VehicleShadows()
+    : program_(gl::Program::fromFiles({"vehicle_shadow.vert", "vehicle_shadow.frag"})),
+      buffer_(gl::Buffer::create()),
+      array_(gl::VertexArray::create()) {
+    array_.buffer(0, buffer_.name(), sizeof(Instance), 1)
+        .attribute(0, 0, 4, GL_FLOAT, false, offsetof(Instance, place))
+        .attribute(1, 0, 4, GL_FLOAT, false, offsetof(Instance, outline));
+}
+
+std::uint32_t VehicleShadows::draw(const PassView& view, const VehicleGeometry& geometry,
+                                   std::span<const vehicles::VehiclePose> poses,
+                                   std::span<const std::uint32_t> chosen, float smallest) {
+    instances_.clear();
+    for (std::uint32_t index : chosen) {
+        const vehicles::VehiclePose& pose = poses[index];
+        const VehicleGeometry::Model& model = geometry.models()[pose.model];
+        const glm::vec3 position(pose.position - view.eye);
+        if (view.allowedError(smallest, glm::length(position)) > 2 * model.radius) continue;
+        const auto c = static_cast<float>(std::cos(pose.heading));
+        const auto s = static_cast<float>(std::sin(pose.heading));
+        const glm::vec3 middle = position + glm::vec3(c * model.centre.x - s * model.centre.y,
+                                                      s * model.centre.x + c * model.centre.y, 0);
+        instances_.push_back({glm::vec4(middle, c), glm::vec4(s, model.halfSize.x, model.halfSize.y,
+                                                              model.centre.z + model.halfSize.z)});
+    }
+    if (instances_.empty()) return 0;
+    buffer_.replace(std::span<const Instance>(instances_));
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_DST_COLOR, GL_ZERO);
+    glDepthMask(GL_FALSE);
+    glDisable(GL_CULL_FACE);
+    program_.use();
+    array_.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(instances_.size()));
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    return 1;
+}
+
+}  // namespace app
