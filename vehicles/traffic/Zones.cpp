@@ -27,14 +27,16 @@ constexpr double clusterGap = 6.0;  // metres between two contacts that are two 
 class Reach {
   public:
     Reach(const WayNetwork& network, std::span<const VehicleKind> kinds)
-        : network_(network), reach_(network.samples.size(), 0.0f) {
+        : network_(network), reach_(2 * network.samples.size(), 0.0f) {
         for (std::uint32_t w = 0; w < network.ways.size(); ++w) {
             const Way& way = network.ways[w];
             for (const VehicleKind& kind : kinds) {
                 if (kind.tram != way.tram) continue;
                 for (std::uint32_t i = 0; i < way.sampleCount; ++i) {
-                    float& r = reach_[way.firstSample + i];
-                    r = std::max(r, 0.5f * kind.width);
+                    for (const std::uint32_t side : {0U, 1U}) {
+                        float& r = reach_[2 * (way.firstSample + i) + side];
+                        r = std::max(r, 0.5f * kind.width);
+                    }
                 }
             }
         }
@@ -48,7 +50,9 @@ class Reach {
             }
         }
     }
-    float at(std::uint32_t sample) const { return reach_[sample]; }
+    float at(std::uint32_t sample) const { return std::max(reach_[2 * sample], reach_[2 * sample + 1]); }
+    /// To the left or to the right alone: a bus swings out on one side of a bend and cuts in on the other.
+    float towards(std::uint32_t sample, bool left) const { return reach_[2 * sample + (left ? 1 : 0)]; }
 
   private:
     void drive(std::uint32_t before, std::uint32_t way, std::uint32_t after,
@@ -156,8 +160,13 @@ class Reach {
             const double t = std::clamp(glm::dot(p - line_[i - 1], e) / glm::dot(e, e), 0.0, 1.0);
             toLine = std::min(toLine, glm::distance(p, line_[i - 1] + t * e));
         }
+        const std::size_t k = std::clamp<std::size_t>(best, 1, line_.size() - 1);
+        const glm::dvec2 d = line_[k] - line_[k - 1];
+        const glm::dvec2 e = p - line_[best];
+        const bool left = d.x * e.y - d.y * e.x > 0;
         for (std::size_t i = best == 0 ? 0 : best - 1; i <= best + 1 && i < ids_.size(); ++i) {
-            reach_[ids_[i]] = std::max(reach_[ids_[i]], static_cast<float>(toLine));
+            float& r = reach_[2 * ids_[i] + (left ? 1 : 0)];
+            r = std::max(r, static_cast<float>(toLine));
         }
     }
 
@@ -284,6 +293,13 @@ void findZones(WayNetwork& network, std::span<const VehicleKind> kinds) {
                     const double ex = p.x - q.x;
                     const double ey = p.y - q.y;
                     if (ex * ex + ey * ey > sum * sum) continue;
+                    const glm::dvec2 u =
+                        directionOf(network, network.ways[w], s - network.ways[w].firstSample);
+                    const glm::dvec2 o =
+                        directionOf(network, network.ways[v], t - network.ways[v].firstSample);
+                    const double facing = reach.towards(s, u.y * ex - u.x * ey > 0) +
+                                          reach.towards(t, o.x * ey - o.y * ex > 0) + clearance;
+                    if (ex * ex + ey * ey > facing * facing) continue;
                     const std::uint32_t i = s - network.ways[w].firstSample;
                     const std::uint32_t j = t - network.ways[v].firstSample;
                     if (joined(w, i * network.ways[w].spacing, v, j * network.ways[v].spacing)) continue;
