@@ -8,6 +8,10 @@
 
 #include "reflection/tracing/LeapWalk.h"
 
+// Vectors without a fixed size cannot be captured by lambdas; processors with SVE have NEON too.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/tracing/LeapFan.cpp"
 #include <hwy/foreach_target.h>
@@ -79,7 +83,14 @@ void finish(const FanStart& fan, const float* dx, const float* dy, const float* 
         result = hn::IfThenElse(is(EntryFace::start), zero, result);
         result = hn::IfThenElse(hn::Ge(code, hn::Set(d, static_cast<double>(missed))),
                                 hn::Set(d, std::numeric_limits<double>::infinity()), result);
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+        // Highway's emulation would turn infinity into the largest float.
+        alignas(64) double wide[widest];
+        hn::Store(result, d, wide);
+        for (std::size_t n = 0; n < hn::Lanes(d); ++n) t[k + n] = static_cast<float>(wide[n]);
+#else
         hn::Store(hn::DemoteTo(f, result), f, t + k);
+#endif
     }
 }
 

@@ -1,6 +1,7 @@
 #include "reflection/tracing/GridTracer.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
@@ -212,7 +213,7 @@ TEST(GridTracerTest, agreesWithExactOracleOnEveryFamilyOfRays) {
     EXPECT_GT(hits, 40000);
 }
 
-TEST(GridTracerTest, fanAgreesWithSingleRaysBitForBit) {
+void compareFansWithSingleRays() {
     std::uint64_t seed = 100;
     for (const Setting& s : settings) {
         SeededRandom random(++seed);
@@ -243,6 +244,24 @@ TEST(GridTracerTest, fanAgreesWithSingleRaysBitForBit) {
                 }
             }
     }
+}
+
+TEST(GridTracerTest, fanAgreesWithSingleRaysBitForBit) {
+    compareFansWithSingleRays();
+}
+
+TEST(GridTracerTest, fanAgreesWithSingleRaysOnEveryInstructionSet) {
+    const std::int64_t all = hwy::SupportedTargets();
+    for (int bit = 0; bit < 63; ++bit) {
+        const std::int64_t target = std::int64_t{1} << bit;
+        if ((all & target) == 0) continue;
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        SCOPED_TRACE(hwy::TargetName(target));
+        compareFansWithSingleRays();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 TEST(GridTracerTest, diagonalPairOfColumnsLeavesNoGap) {
