@@ -8,7 +8,9 @@ namespace gl = reflection::gl;
 
 ViewTarget::ViewTarget(Antialiasing antialiasing)
     : antialiasing_(antialiasing), nothing_(gl::VertexArray::create()) {
-    if (antialiasing_ == Antialiasing::fxaa) fxaa_ = gl::Program::fromFiles({"fullscreen.vert", "fxaa.frag"});
+    if (antialiasing_ != Antialiasing::fxaa) return;
+    findEdges_ = gl::Program::fromFiles({"fullscreen.vert", "fxaa.frag"}, {"FIND"});
+    fxaa_ = gl::Program::fromFiles({"fullscreen.vert", "fxaa.frag"});
 }
 
 void ViewTarget::begin(glm::ivec2 size) {
@@ -25,6 +27,13 @@ void ViewTarget::begin(glm::ivec2 size) {
         target_ = gl::Framebuffer::create();
         target_.attach(GL_COLOR_ATTACHMENT0, colour_.name()).attach(GL_DEPTH_ATTACHMENT, depth_.name());
         target_.requireComplete("a view");
+        if (antialiasing_ == Antialiasing::fxaa) {
+            smooth_ = gl::Texture::image2D(GL_RGBA8, size.x, size.y);
+            smoothTarget_ = gl::Framebuffer::create();
+            smoothTarget_.attach(GL_COLOR_ATTACHMENT0, smooth_.name())
+                .attach(GL_DEPTH_ATTACHMENT, depth_.name());
+            smoothTarget_.requireComplete("antialiasing");
+        }
     }
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
     glViewport(0, 0, size.x, size.y);
@@ -32,20 +41,37 @@ void ViewTarget::begin(glm::ivec2 size) {
     glClear(GL_DEPTH_BUFFER_BIT);  // every pixel gets a colour, the sky's at least
 }
 
-void ViewTarget::finish(std::uint32_t framebuffer) {
-    glBlitNamedFramebuffer(target_.name(), framebuffer, 0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y,
-                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    if (antialiasing_ != Antialiasing::fxaa) return;
-    glDisable(GL_DEPTH_TEST);
+void ViewTarget::mendEdges() {
+    glCopyImageSubData(colour_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, smooth_.name(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                       size_.x, size_.y, 1);
+    glBindFramebuffer(GL_FRAMEBUFFER, smoothTarget_.name());
     glDisable(GL_CULL_FACE);
     colour_.bind(3);
+    nothing_.bind();
+    // Marks take the scene's depth buffer, which has served: depth 1 is the near plane, where nothing is
+    // drawn.
+    findEdges_.set("last", size_ - 1);
+    findEdges_.use();
+    glDepthFunc(GL_ALWAYS);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     fxaa_.set("texel", 1.f / glm::vec2(size_));
     fxaa_.set("last", size_ - 1);
     fxaa_.use();
-    nothing_.bind();
+    glDepthFunc(GL_EQUAL);
+    glDepthMask(GL_FALSE);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GEQUAL);
+}
+
+void ViewTarget::finish(std::uint32_t framebuffer) {
+    const bool mended = antialiasing_ == Antialiasing::fxaa;
+    if (mended) mendEdges();
+    glBlitNamedFramebuffer((mended ? smoothTarget_ : target_).name(), framebuffer, 0, 0, size_.x, size_.y, 0,
+                           0, size_.x, size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
 }  // namespace app

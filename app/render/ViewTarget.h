@@ -23,11 +23,16 @@ class ViewTarget {
     void finish(std::uint32_t framebuffer);
 
   private:
+    void mendEdges();
+
     Antialiasing antialiasing_;
     glm::ivec2 size_{0};
     reflection::gl::Texture colour_;
     reflection::gl::Texture depth_;
     reflection::gl::Framebuffer target_;
+    reflection::gl::Texture smooth_;  ///< fxaa: the image with its edges mended
+    reflection::gl::Framebuffer smoothTarget_;
+    reflection::gl::Program findEdges_;
     reflection::gl::Program fxaa_;
     reflection::gl::VertexArray nothing_;
 };

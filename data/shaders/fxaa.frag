@@ -1,10 +1,13 @@
 #version 450 core
-// Antialiasing after the fact, after Lottes 2009 (FXAA 3, quality path with fewer search steps). The target already holds the image: pixels
-// without an edge are left alone by `discard`, which ends the work of whole pixel blocks on software and hardware alike.
+// Antialiasing after the fact, after Lottes 2009 (FXAA 3, quality path with fewer search steps), in two passes: FIND marks pixels on
+// edges in the depth buffer, the other, drawn where the mark is, works on those alone. A `discard` instead would not do: a software rasteriser
+// goes on computing what is discarded, but skips blocks of pixels that fail an early depth test.
 layout(binding = 3) uniform sampler2D image;
 uniform vec2 texel;  // 1 / size
 uniform ivec2 last;  // size - 1
+#ifndef FIND
 layout(location = 0) out vec4 colourOut;
+#endif
 
 const float edgeThreshold = 0.125;      // share of the local maximum
 const float edgeThresholdDark = 0.0312;  // absolute
@@ -26,8 +29,9 @@ void main() {
     float highest = max(max(max(n, s), max(e, w)), m);
     float lowest = min(min(min(n, s), min(e, w)), m);
     float range = highest - lowest;
+#ifdef FIND
     if (range < max(edgeThresholdDark, highest * edgeThreshold)) discard;
-
+#else
     float ne = lumaAt(here + ivec2(1, 1));
     float sw = lumaAt(here - ivec2(1, 1));
     float nw = lumaAt(here + ivec2(-1, 1));
@@ -81,4 +85,5 @@ void main() {
     bool wrongSide = (nearestEnd < 0.0) == (m - onEdge < 0.0);
     float edge = wrongSide ? 0.0 : 0.5 - nearest / (forward + backward);
     colourOut = vec4(textureLod(image, at + max(edge, subpixel) * across, 0.0).rgb, 1.0);
+#endif
 }

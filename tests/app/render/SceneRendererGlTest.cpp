@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -70,6 +71,58 @@ TEST_F(SceneRendererGlTest, drawsStreetCarsAndSky) {
     EXPECT_EQ(renderer.counters().vehiclesDrawn, 3u);
     EXPECT_GT(renderer.counters().chunksCulled, 0u);
     EXPECT_GT(renderer.counters().chunksDrawn, 0u);
+}
+
+TEST_F(SceneRendererGlTest, everyAntialiasingShowsTheSamePicture) {
+    const city::CityModel city = test::boxCity();
+    const View view = lookAt({-14, -5, 3}, {10, -2, 1}, 1.0, size_);
+    std::vector<Image8> images;
+    for (Antialiasing antialiasing : {Antialiasing::none, Antialiasing::fxaa, Antialiasing::msaa4}) {
+        RenderOptions options;
+        options.antialiasing = antialiasing;
+        SceneRenderer renderer(city, models_, options);
+        images.push_back(draw(renderer, view));
+    }
+    for (std::size_t k = 1; k < images.size(); ++k) {
+        double sum = 0;
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < images[0].rgba.size(); ++i) {
+            const int d = std::abs(int(images[k].rgba[i]) - int(images[0].rgba[i]));
+            sum += d;
+            different += d > 4 ? 1 : 0;
+        }
+        EXPECT_GT(different, 100u) << "edges are not smoothed";
+        EXPECT_LT(sum / static_cast<double>(images[0].rgba.size()), 1.5) << "more than edges changed";
+    }
+}
+
+TEST_F(SceneRendererGlTest, vehiclesMirrorTheirMapsAndPlainOnesDoNot) {
+    // A map of pure green light: it must show on the car that has it, and only there.
+    const city::CityModel city = test::boxCity();
+    SceneRenderer renderer(city, models_, {});
+    const auto maps = gl::Texture::cubeArray(GL_RGBA16F, 64, 2, 7);
+    const std::array<float, 4> green{0, 6, 0, 1};
+    for (int level = 0; level < 7; ++level)
+        glClearTexImage(maps.name(), level, GL_RGBA, GL_FLOAT, green.data());
+    VehicleReflections reflections;
+    reflections.textures.cubeArrays[1] = maps.name();
+    reflections.slots = {{1, 1}, {}, {3, 0}};  // the third asks for a class that is empty: plain
+    for (auto& vehicle : scene_.vehicles) vehicle.paint = glm::vec3(0.02f);
+    const View view = lookAt({-4, -9, 2.2}, {6, -3, 0.6}, 1.3, size_);
+    const Image8 with = draw(renderer, view, reflections);
+    const Image8 without = draw(renderer, view);
+    test::writePng("green-map", with);
+    const auto greenness = [&](const Image8& image, double x) {
+        // The middle of a car's right-hand side, which faces the eye.
+        const glm::vec4 clip = view.clipFromView * view.viewFromWorld *
+                               glm::vec4(glm::vec3(glm::dvec3(x, -3.9, 0.75) - view.eye), 1);
+        const glm::ivec3 p = pixel(image, static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * 640.f),
+                                   static_cast<int>((0.5f - clip.y / clip.w * 0.5f) * 360.f));
+        return p.g - p.r;
+    };
+    EXPECT_GT(greenness(with, 0), greenness(without, 0) + 40);
+    EXPECT_EQ(greenness(with, 8), greenness(without, 8));
+    EXPECT_EQ(greenness(with, 16), greenness(without, 16));
 }
 
 /// The same view with and without occlusion culling: the pixels equal, and something was left out somewhere.
