@@ -9,6 +9,7 @@ namespace {
 
 std::vector<Bench> allBenches() {
     return {
+        {{"cars", "frame time and error against the number of mirroring cars, every method on the same frames"}, benchCars},
         {{"localmap", "one local map by every method, against re-rendering its six faces"}, benchLocalMap},
         {{"tracer", "rays per second against heightfields, with an exact check; beside Embree"},
          benchTracer}};

@@ -14,6 +14,7 @@ struct Bench {
     std::function<int(const Options&)> run;
 };
 
+int benchCars(const Options& options);
 int benchTracer(const Options& options);
 int benchLocalMap(const Options& options);
 

@@ -1,0 +1,272 @@
+#include "app/commands/CarsBench.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <optional>
+#include <set>
+
+#include "app/display/OffscreenTarget.h"
+#include "app/frame/AssembleFrame.h"
+#include "app/frame/ReflectionEngine.h"
+#include "app/render/Readback.h"
+#include "app/report/Progress.h"
+#include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/truth/ImageError.h"
+
+namespace app {
+
+namespace {
+
+constexpr double fieldOfView = 60;
+
+/// A place to look down a street from, a bus driver's height above a lane.
+struct Lookout {
+    glm::dvec3 eye{0}, target{1, 0, 0};
+};
+
+std::vector<Lookout> lookouts(const city::CityModel& city) {
+    std::vector<Lookout> found;
+    for (const city::Lane& lane : city.roads.lanes) {
+        if (lane.kind != city::LaneKind::car || laneLength(lane) < 60) continue;
+        const glm::dvec3 a(lane.centreLine.front()), b(lane.centreLine.back());
+        found.push_back({a + glm::dvec3(0, 0, 5), b + glm::dvec3(0, 0, 0.5)});
+    }
+    return found;
+}
+
+/// Traffic with enough cars in view of the best of a few lookouts.
+struct Stage {
+    View view;
+    std::optional<vehicles::Traffic> traffic;
+    std::size_t visible = 0;
+};
+
+Stage setStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars, const CarsBenchOptions& options) {
+    Stage best;
+    std::vector<Lookout> places = lookouts(scene.city);
+    constexpr std::size_t placesTried = 6;
+    const std::size_t stride = std::max<std::size_t>(1, places.size() / placesTried);
+    for (std::size_t p = 0; p < places.size() && best.visible < cars; p += stride) {
+        const View view = lookAt(places[p].eye, places[p].target, glm::radians(fieldOfView), options.resolution);
+        for (const std::uint32_t wanted : {2 * cars, 4 * cars, 8 * cars}) {
+            vehicles::TrafficOptions traffic;
+            traffic.seed = options.seed;
+            traffic.cars = wanted;
+            const glm::dvec3 ahead = glm::normalize(places[p].target - places[p].eye);
+            traffic.focus = vehicles::Focus{glm::vec3(places[p].eye + 60.0 * ahead), 400};
+            vehicles::Traffic simulation(scene.city.roads, scene.kinds, traffic);
+            for (int step = 0; step < 120; ++step) simulation.step();
+            renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}));
+            const std::size_t visible = renderer.visibleVehicles(view).size();
+            if (visible > best.visible) {
+                best.view = view;
+                best.visible = visible;
+                best.traffic.emplace(std::move(simulation));
+            }
+            if (best.visible >= cars || simulation.size() < wanted) break;
+        }
+    }
+    return best;
+}
+
+std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, const View& view) {
+    std::vector<SeenVehicle> seen;
+    for (const auto& v : renderer.visibleVehicles(view)) seen.push_back({v.index, v.diameterPixels});
+    return seen;
+}
+
+/// A frame in which only so many vehicles are left, those largest on screen that were kept in the frame before first: nobody is
+/// swapped while he is still seen.
+class Cast {
+  public:
+    explicit Cast(std::uint32_t count) : count_(count) {}
+
+    void select(FrameScene& scene, SceneRenderer& renderer) {
+        renderer.prepare(scene);
+        std::vector<SeenVehicle> seen = seenIn(renderer, scene.views.front());
+        std::stable_sort(seen.begin(), seen.end(), [&](const SeenVehicle& a, const SeenVehicle& b) {
+            const bool keptA = kept_.contains(scene.vehicles[a.index].id), keptB = kept_.contains(scene.vehicles[b.index].id);
+            return keptA != keptB ? keptA : a.diameterPixels > b.diameterPixels;
+        });
+        seen.resize(std::min<std::size_t>(seen.size(), count_));
+        kept_.clear();
+        std::vector<vehicles::VehiclePose> stay;
+        for (const SeenVehicle& v : seen) {
+            kept_.insert(scene.vehicles[v.index].id);
+            stay.push_back(scene.vehicles[v.index]);
+        }
+        scene.vehicles = std::move(stay);
+    }
+
+  private:
+    std::uint32_t count_;
+    std::set<std::uint32_t> kept_;
+};
+
+using Pixels = std::vector<glm::vec3>;
+
+Pixels toFloat(const Image8& image) {
+    Pixels pixels(image.rgba.size() / 4);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = glm::vec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0f;
+    return pixels;
+}
+
+/// Pixels in which a vehicle mirrors something: those that differ between a black and a white surrounding.
+class MirrorMask {
+  public:
+    MirrorMask() {
+        reflection::LocalMap map;
+        map.resize(reflection::localMapFaceSizes.back());
+        atlas_.reserve(static_cast<int>(reflection::localMapFaceSizes.size()) - 1, 2);
+        for (int shade = 0; shade < 2; ++shade) {
+            for (std::vector<float>* plane : {&map.red, &map.green, &map.blue})
+                std::fill(plane->begin(), plane->end(), 4.0f * static_cast<float>(shade));
+            reflection::PackedMips mips;
+            reflection::packMips(map, mips);
+            atlas_.upload(slot(shade), mips);
+        }
+    }
+
+    std::vector<unsigned char> of(SceneRenderer& renderer, const FrameScene& scene, const OffscreenTarget& target) {
+        Image8 images[2];
+        for (int shade = 0; shade < 2; ++shade) {
+            VehicleReflections reflections;
+            reflections.textures = atlas_.textures();
+            reflections.slots.assign(scene.vehicles.size(), slot(shade));
+            renderer.drawView(scene.views.front(), reflections, target.framebuffer());
+            images[shade] = readPixels(target.framebuffer(), target.size());
+        }
+        std::vector<unsigned char> mask(images[0].rgba.size() / 4);
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (images[0].rgba[4 * i + c] != images[1].rgba[4 * i + c]) mask[i] = 1;
+        return mask;
+    }
+
+  private:
+    static reflection::LocalMapSlot slot(int layer) {
+        return {static_cast<std::int16_t>(reflection::localMapFaceSizes.size() - 1), static_cast<std::int16_t>(layer)};
+    }
+    reflection::LocalMapAtlas atlas_;
+};
+
+struct MethodRun {
+    std::string name;
+    std::unique_ptr<ReflectionEngine> engine;
+    std::vector<double> frameMs;
+    double psnrSum = 0, flipSum = 0, maps = 0;
+    std::uint32_t compared = 0;
+};
+
+}  // namespace
+
+std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
+                                  const CarsBenchOptions& options) {
+    std::vector<CarsRow> rows;
+    const OffscreenTarget target(options.resolution);
+    MirrorMask mirrors;
+    Progress progress("frames", options.cars.size() * (options.frames + options.warmUp), options.quiet);
+    for (const std::uint32_t cars : options.cars) {
+        Stage stage = setStage(scene, renderer, cars, options);
+        if (!stage.traffic) {
+            spdlog::warn("the city has no street to look down; nothing was measured for {} cars", cars);
+            continue;
+        }
+        if (stage.visible < cars) spdlog::warn("only {} of {} cars fit on screen", stage.visible, cars);
+
+        std::vector<MethodRun> methods;
+        const auto add = [&](std::string name, ReflectionMethod method, MemVariant variant) {
+            ReflectionSettings settings;
+            settings.method = method;
+            settings.variant = variant;
+            settings.quality = options.quality;
+            methods.push_back({std::move(name),
+                               std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings), {}});
+        };
+        add("none", ReflectionMethod::none, MemVariant::ours);
+        add("static", ReflectionMethod::fixed, MemVariant::ours);
+        add("blend", ReflectionMethod::blend, MemVariant::ours);
+        add("box", ReflectionMethod::box, MemVariant::ours);
+        add("mem paper", ReflectionMethod::mem, MemVariant::paper);
+        add("mem", ReflectionMethod::mem, MemVariant::ours);
+        add("rerender", ReflectionMethod::rerender, MemVariant::ours);
+
+        Cast cast(cars);
+        std::uint32_t visible = 0;
+        for (std::uint32_t frame = 0; frame < options.warmUp + options.frames && !interrupted(); ++frame) {
+            for (double ahead = 0; ahead < options.frameStep; ahead += vehicles::TrafficOptions{}.step) stage.traffic->step();
+            FrameScene picture = assembleFrame(scene.city, *stage.traffic, scene.lighting, {stage.view});
+            cast.select(picture, renderer);
+            const bool measured = frame >= options.warmUp;
+
+            std::vector<Image8> images;
+            for (MethodRun& method : methods) {
+                // Re-rendering holds nothing from frame to frame: its warm-up would only cost time.
+                if (!measured && method.engine->settings().method == ReflectionMethod::rerender && frame + 1 < options.warmUp) continue;
+                finishDrawing();
+                const Stopwatch watch;
+                renderer.prepare(picture);
+                VehicleReflections reflections;
+                if (method.engine->settings().method != ReflectionMethod::none) {
+                    const std::vector<SeenVehicle> seen = seenIn(renderer, stage.view);
+                    visible = static_cast<std::uint32_t>(seen.size());
+                    const ReflectionPlan& plan = method.engine->update(picture, seen, renderer);
+                    reflections = {method.engine->textures(), plan.slots};
+                }
+                renderer.drawView(stage.view, reflections, target.framebuffer());
+                finishDrawing();
+                if (!measured) continue;
+                method.frameMs.push_back(watch.elapsed());
+                method.maps += method.engine->counters().rebuilt;
+                images.push_back(readPixels(target.framebuffer(), target.size()));
+            }
+            if (measured) {
+                const std::vector<unsigned char> mask = mirrors.of(renderer, picture, target);
+                const Pixels truth = toFloat(images.back());
+                const int width = options.resolution.x, height = options.resolution.y;
+                for (std::size_t m = 0; m < methods.size(); ++m) {
+                    const Pixels test = toFloat(images[m]);
+                    methods[m].psnrSum += reflection::psnr({width, height, test}, {width, height, truth}, mask);
+                    methods[m].flipSum +=
+                        reflection::meanError(reflection::flip({width, height, test}, {width, height, truth}), mask);
+                    ++methods[m].compared;
+                }
+            }
+            progress.advance();
+        }
+
+        const std::vector<double>& none = methods.front().frameMs;
+        const std::vector<double>& rerender = methods.back().frameMs;
+        for (const MethodRun& method : methods) {
+            if (method.compared == 0) continue;
+            CarsRow row;
+            row.method = method.name;
+            row.cars = cars;
+            row.visible = visible;
+            row.frame = timingOf(method.frameMs);
+            std::vector<double> extra, ratio, against;
+            for (std::size_t i = 0; i < method.frameMs.size(); ++i) {
+                extra.push_back(method.frameMs[i] - none[i]);
+                ratio.push_back(method.frameMs[i] / none[i]);
+                against.push_back((rerender[i] - none[i]) / std::max(method.frameMs[i] - none[i], 1e-3));
+            }
+            row.reflection = timingOf(extra);
+            row.ratioToNone = timingOf(ratio).median;
+            row.rerenderRatio = timingOf(against).median;
+            row.psnr = method.psnrSum / method.compared;
+            row.flip = method.flipSum / method.compared;
+            row.mapsPerFrame = method.maps / method.compared;
+            row.textureBytes = method.engine->counters().localMapBytes;
+            rows.push_back(row);
+        }
+        if (interrupted()) break;
+    }
+    return rows;
+}
+
+}  // namespace app
