@@ -26,8 +26,8 @@ namespace gl = reflection::gl;
 
 namespace {
 
-/// Beams around the eye by which hidden things are left out: 0.18 and 0.7 degrees wide.
-constexpr int viewBeams = 2048;
+/// Beams around the eye by which hidden things are left out: 0.35 and 0.7 degrees wide.
+constexpr int viewBeams = 1024;
 constexpr int cubeBeams = 512;
 /// Cubes are seen from inside vehicles, close to the road.
 constexpr float cubeNear = 0.05f;
@@ -112,10 +112,16 @@ struct SceneRenderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    std::optional<SkylineView> skylineFor(const PassView& view, int beams, bool allAround) const {
-        if (!options.occlusionCulling) return std::nullopt;
-        return SkylineView(skyline, view.eye, beams,
-                           allAround ? SkylineView::Sector{} : SkylineView::sectorOf(view.clipFromRelative));
+    /// What a view cannot see; the last answer is kept, as one view is asked for its vehicles before it is
+    /// drawn.
+    const SkylineView* skylineFor(const PassView& view) const {
+        if (!options.occlusionCulling) return nullptr;
+        if (!lastSkyline || lastEye != view.eye || lastClip != view.clipFromRelative) {
+            lastEye = view.eye;
+            lastClip = view.clipFromRelative;
+            lastSkyline.emplace(skyline, view.eye, viewBeams, SkylineView::sectorOf(view.clipFromRelative));
+        }
+        return &*lastSkyline;
     }
 
     std::vector<VisibleVehicle> visible(const PassView& pass) const {
@@ -134,6 +140,9 @@ struct SceneRenderer::Impl {
 
     RenderOptions options;
     Skyline skyline;
+    mutable std::optional<SkylineView> lastSkyline;
+    mutable glm::dvec3 lastEye{0};
+    mutable glm::mat4 lastClip{0};
     CityPass cityPass;
     ShadowMap shadow;
     VehiclePass vehiclePass;
@@ -174,8 +183,7 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
     PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
-    const std::optional<SkylineView> skyline = my.skylineFor(pass, viewBeams, false);
-    pass.skyline = skyline ? &*skyline : nullptr;
+    pass.skyline = my.skylineFor(pass);
 
     my.updateShadow();
     setDrawState();
@@ -209,8 +217,8 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
     my.updateShadow();
     setDrawState();
     my.cube.begin(target);
-    const PassView around(centre, clipFromCubeFace(0, cubeNear), 1);
-    const std::optional<SkylineView> skyline = my.skylineFor(around, cubeBeams, true);
+    std::optional<SkylineView> skyline;
+    if (my.options.occlusionCulling) skyline.emplace(my.skyline, centre, cubeBeams, SkylineView::Sector{});
     for (int face = 0; face < 6; ++face) {
         my.cube.selectFace(face);
         PassView pass(centre, clipFromCubeFace(face, cubeNear), 0.5f * static_cast<float>(target.faceSize));
@@ -240,8 +248,7 @@ const RenderCounters& SceneRenderer::counters() const {
 std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(const View& view) const {
     const Impl& my = *impl_;
     PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
-    const std::optional<SkylineView> skyline = my.skylineFor(pass, viewBeams, false);
-    pass.skyline = skyline ? &*skyline : nullptr;
+    pass.skyline = my.skylineFor(pass);
     return my.visible(pass);
 }
 
