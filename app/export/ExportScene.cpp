@@ -28,7 +28,8 @@ std::array<double, 3> numbers(const glm::vec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// What each surface of a vehicle is in glTF's terms.
+/// What each surface of a vehicle is in glTF's terms. Bright metal is only partly metallic: a renderer
+/// without an environment map would show it black.
 GltfMaterial surfaceMaterial(vehicles::Surface surface) {
     using vehicles::Surface;
     switch (surface) {
@@ -37,12 +38,14 @@ GltfMaterial surfaceMaterial(vehicles::Surface surface) {
         case Surface::glass:
             return {.name = "glass", .baseColour = glm::vec3(0.02f), .roughness = 0.03f};
         case Surface::chrome:
-            return {
-                .name = "chrome", .baseColour = {0.55f, 0.556f, 0.554f}, .metallic = 1, .roughness = 0.05f};
+            return {.name = "chrome",
+                    .baseColour = {0.55f, 0.556f, 0.554f},
+                    .metallic = 0.6f,
+                    .roughness = 0.05f};
         case Surface::tyre:
             return {.name = "tyre", .baseColour = glm::vec3(0.02f), .roughness = 0.9f};
         case Surface::rim:
-            return {.name = "rim", .baseColour = glm::vec3(0.6f), .metallic = 1, .roughness = 0.3f};
+            return {.name = "rim", .baseColour = glm::vec3(0.6f), .metallic = 0.4f, .roughness = 0.3f};
         case Surface::headLamp:
             return {.name = "headLamp", .baseColour = glm::vec3(0.8f), .roughness = 0.1f};
         case Surface::tailLamp:

@@ -73,7 +73,7 @@ void drawFrameTimes(std::span<const float> frameMs) {
 void drawMap(const PanelNews& news, PanelChoices& choices) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x - 12, screen.y - 12}, ImGuiCond_FirstUseEver, {1, 1});
-    ImGui::SetNextWindowSize({540, 470}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({430, 385}, ImGuiCond_FirstUseEver);
     ImGui::Begin("What am I seeing?", &choices.showMap, ImGuiWindowFlags_NoCollapse);
     if (news.mapTexture == 0) {
         ImGui::TextWrapped("%s", news.followed.empty()

@@ -54,7 +54,7 @@ void VideoWriter::Impl::start(int framesPerSecond) {
                                    "-loglevel", "error",
                                    "-y",        "-f",
                                    "rawvideo",  "-pixel_format",
-                                   "rgba",     "-video_size",
+                                   "rgba",      "-video_size",
                                    size,        "-framerate",
                                    rate,        "-i",
                                    "pipe:0",    "-an",
@@ -132,7 +132,8 @@ VideoWriter::~VideoWriter() {
 
 void VideoWriter::add(const Picture& picture) {
     if (picture.width != impl_->width || picture.height != impl_->height ||
-        picture.rgba.size() != static_cast<std::size_t>(impl_->width) * static_cast<std::size_t>(impl_->height) * 4)
+        picture.rgba.size() !=
+            static_cast<std::size_t>(impl_->width) * static_cast<std::size_t>(impl_->height) * 4)
         throw std::runtime_error("a picture of another size cannot join the video '" +
                                  impl_->file.file().string() + "'.");
     const std::uint8_t* data = picture.rgba.data();

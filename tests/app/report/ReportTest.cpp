@@ -131,7 +131,8 @@ Picture gradient(int width, int height, int shift) {
     Picture picture{width, height, {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 4; ++c) picture.rgba.push_back(static_cast<std::uint8_t>((x * 3 + y * 2 + c * 40 + shift) & 255));
+            for (int c = 0; c < 4; ++c)
+                picture.rgba.push_back(static_cast<std::uint8_t>((x * 3 + y * 2 + c * 40 + shift) & 255));
     return picture;
 }
 
