@@ -36,6 +36,9 @@ VehicleInstance instanceOf(const glm::mat3& r, const glm::vec3& t, const vehicle
 }  // namespace
 
 VehiclePass::VehiclePass(std::span<const vehicles::VehicleModel> models) : geometry_(models) {
+    // One level at a time: the level is chosen per pixel, and half the fetches are what reflections cost most
+    // in software.
+    mapSampler_ = reflection::gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
     for (std::size_t target = 0; target < 2; ++target) {
         for (std::size_t reflective = 0; reflective < 2; ++reflective) {
             std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
@@ -122,6 +125,7 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
     geometry_.instances().replace(std::span<const VehicleInstance>(instances_));
 
     geometry_.array().bind();
+    mapSampler_.bind(2);
     glEnable(GL_CULL_FACE);
     int used = -2;
     for (std::size_t first = 0; first < order_.size();) {
@@ -143,6 +147,7 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
         counts.triangles += std::uint64_t{piece.range.indexCount / 3} * (last - first);
         first = last;
     }
+    glBindSampler(2, 0);
     return counts;
 }
 

@@ -9,6 +9,7 @@
 #include "app/render/VehicleGeometry.h"
 #include "reflection/gl/LocalMapTextures.h"
 #include "reflection/gl/Program.h"
+#include "reflection/gl/Texture.h"
 #include "vehicles/traffic/VehiclePose.h"
 
 namespace app {
@@ -47,6 +48,7 @@ class VehiclePass {
     };
 
     VehicleGeometry geometry_;
+    reflection::gl::Sampler mapSampler_;
     std::array<std::array<reflection::gl::Program, 2>, 2> programs_;  ///< [target][reflective]
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> order_;
