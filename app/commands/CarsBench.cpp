@@ -62,12 +62,13 @@ Stage setStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars, 
             for (int step = 0; step < 120; ++step) simulation.step();
             renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}));
             const std::size_t visible = renderer.visibleVehicles(view).size();
+            const bool full = simulation.size() < wanted;
             if (visible > best.visible) {
                 best.view = view;
                 best.visible = visible;
                 best.traffic.emplace(std::move(simulation));
             }
-            if (best.visible >= cars || simulation.size() < wanted) break;
+            if (best.visible >= cars || full) break;
         }
     }
     return best;
