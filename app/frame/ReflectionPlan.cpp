@@ -13,7 +13,8 @@ namespace {
 constexpr double streetHalfWidth = 8;
 /// Neighbours farther than this do not fill enough of a map to count.
 constexpr double neighbourRange = 15;
-/// Frames a map outlives its vehicle's last sight: a car behind a tree or a tour's cut back keeps its map for a second.
+/// Frames a map outlives its vehicle's last sight: a car behind a tree or a tour's cut back keeps its map for
+/// a second.
 constexpr std::uint64_t framesKept = 60;
 
 }  // namespace
@@ -21,13 +22,16 @@ constexpr std::uint64_t framesKept = 60;
 int sizeClassFor(float diameterPixels, float texelsPerPixel, int held) {
     const auto wanted = [texelsPerPixel](float pixels) {
         int c = static_cast<int>(reflection::localMapFaceSizes.size()) - 1;
-        while (c > 0 && static_cast<float>(reflection::localMapFaceSizes[static_cast<std::size_t>(c)]) < pixels * texelsPerPixel) --c;
+        while (c > 0 && static_cast<float>(reflection::localMapFaceSizes[static_cast<std::size_t>(c)]) <
+                            pixels * texelsPerPixel)
+            --c;
         return c;
     };
     const int now = wanted(diameterPixels);
     if (held < 0 || now == held) return now;
     // Finer at once when clearly needed, coarser only when clearly not.
-    return now < held ? std::min(held, wanted(diameterPixels / 1.2f)) : std::max(held, wanted(diameterPixels * 1.2f));
+    return now < held ? std::min(held, wanted(diameterPixels / 1.2f))
+                      : std::max(held, wanted(diameterPixels * 1.2f));
 }
 
 void ReflectionPlanner::reset() {
@@ -63,7 +67,8 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
     plan.visible = static_cast<std::uint32_t>(seen.size());
 
     const auto texelsOf = [](reflection::LocalMapSlot slot) {
-        const auto side = static_cast<std::uint64_t>(reflection::localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)]);
+        const auto side = static_cast<std::uint64_t>(
+            reflection::localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)]);
         return 6 * side * side;
     };
 
@@ -72,9 +77,11 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         const vehicles::VehiclePose& pose = scene.vehicles[vehicle.index];
         Held& map = held_[pose.id];
         map.lastSeen = frame_;
-        const int sizeClass = sizeClassFor(vehicle.diameterPixels, options.texelsPerPixel, map.slot.sizeClass);
+        const int sizeClass =
+            sizeClassFor(vehicle.diameterPixels, options.texelsPerPixel, map.slot.sizeClass);
         const glm::dvec3 centre =
-            pose.position + glm::dvec3(0, 0, pose.model < centreHeights.size() ? centreHeights[pose.model] : 0.8f);
+            pose.position +
+            glm::dvec3(0, 0, pose.model < centreHeights.size() ? centreHeights[pose.model] : 0.8f);
 
         double pixels = std::numeric_limits<double>::infinity();
         if (map.built) {
@@ -82,7 +89,9 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
             pixels = vehicle.diameterPixels * moved / (3.14159265 * streetHalfWidth);
             // A map of the wrong detail is replaced when its turn comes; until then the old one is shown.
             if (sizeClass != map.slot.sizeClass)
-                pixels += vehicle.diameterPixels / static_cast<float>(reflection::localMapFaceSizes[static_cast<std::size_t>(map.slot.sizeClass)]);
+                pixels += vehicle.diameterPixels /
+                          static_cast<float>(
+                              reflection::localMapFaceSizes[static_cast<std::size_t>(map.slot.sizeClass)]);
         }
         if (map.built && !options.everyFrame && pixels < options.errorThreshold) {
             ++plan.fresh;
@@ -96,21 +105,25 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         wanted.push_back(job);
     }
 
-    // New maps first, then by error; larger vehicles and ids decide ties so that the order is always the same.
+    // New maps first, then by error; larger vehicles (finer maps) and ids decide ties so that the order is
+    // always the same.
     std::sort(wanted.begin(), wanted.end(), [&](const MapJob& a, const MapJob& b) {
         if (a.error != b.error) return a.error > b.error;
+        if (a.slot.sizeClass != b.slot.sizeClass) return a.slot.sizeClass < b.slot.sizeClass;
         return scene.vehicles[a.vehicle].id < scene.vehicles[b.vehicle].id;
     });
     for (MapJob& job : wanted) {
         Held& map = held_[scene.vehicles[job.vehicle].id];
         const std::uint64_t cost = texelsOf(job.slot);
-        const bool affordable = plan.jobs.empty() || plan.texels + cost <= options.texelBudget || options.everyFrame;
+        const bool affordable =
+            plan.jobs.empty() || plan.texels + cost <= options.texelBudget || options.everyFrame;
         if (!affordable && map.built) {
             ++plan.postponed;
             continue;
         }
         if (!affordable && job.slot.sizeClass + 1 < static_cast<int>(reflection::localMapFaceSizes.size())) {
-            // A vehicle must not appear without a reflection: a coarse map now, the fine one when its turn comes.
+            // A vehicle must not appear without a reflection: a coarse map now, the fine one when its turn
+            // comes.
             job.slot.sizeClass = static_cast<std::int16_t>(reflection::localMapFaceSizes.size() - 2);
         }
         if (map.slot.sizeClass != job.slot.sizeClass) {
@@ -126,12 +139,14 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         plan.jobs.push_back(job);
     }
 
-    for (const SeenVehicle& vehicle : seen) plan.slots[vehicle.index] = held_[scene.vehicles[vehicle.index].id].slot;
+    for (const SeenVehicle& vehicle : seen)
+        plan.slots[vehicle.index] = held_[scene.vehicles[vehicle.index].id].slot;
 
-    // How far the neighbours moved since the last frame. A vehicle passing at distance r changes about (size / r)^2 of the map.
-    for (const SeenVehicle& vehicle : seen) {
-        Held& map = held_[scene.vehicles[vehicle.index].id];
-        const vehicles::VehiclePose& own = scene.vehicles[vehicle.index];
+    // How far the neighbours moved since the last frame, for maps out of sight as well: they may be shown
+    // again. A vehicle passing at distance r changes about (size / r)^2 of the map.
+    for (const vehicles::VehiclePose& own : scene.vehicles) {
+        const auto map = held_.find(own.id);
+        if (map == held_.end()) continue;
         double motion = 0;
         for (const vehicles::VehiclePose& other : scene.vehicles) {
             if (other.id == own.id || other.speed == 0) continue;
@@ -139,9 +154,10 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
             const double squared = glm::dot(apart, apart);
             if (squared > neighbourRange * neighbourRange) continue;
             constexpr double vehicleSize = 2;
-            motion = std::max(motion, other.speed * elapsed * std::min(1.0, vehicleSize * vehicleSize / std::max(squared, 1.0)));
+            motion = std::max(motion, other.speed * elapsed *
+                                          std::min(1.0, vehicleSize * vehicleSize / std::max(squared, 1.0)));
         }
-        map.neighbourMotion += motion;
+        map->second.neighbourMotion += motion;
     }
     for (auto it = held_.begin(); it != held_.end();) {
         if (it->second.lastSeen + framesKept < frame_) {
