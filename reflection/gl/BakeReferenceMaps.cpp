@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "reflection/gl/ReferenceMapBaker.h"
+#include "reflection/reference_maps/PackedFile.h"
 
 namespace reflection {
 
@@ -29,12 +30,20 @@ BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> po
     if (store) {
         std::vector<std::string> damage(positions.size());
         tbb::parallel_for(std::size_t{0}, positions.size(), [&](std::size_t i) {
+            const std::optional<PackedFileKey> key = packedFileKey(store->file(i), store->contentHash());
+            if (!key) return;
+            // The same content hash with another detail or place: left from a bake with other options.
+            const auto wanted = [&](int faceSize, const glm::dvec3& position) {
+                return faceSize == options.faceSize && position == positions[i];
+            };
+            maps[i] = loadPacked(store->packedFile(i), *key);
+            if (maps[i] && wanted(maps[i]->faceSize(), maps[i]->position())) return;
+            maps[i].reset();
             ReferenceMapStore::Loaded loaded = store->load(i);
             damage[i] = loaded.damage;
-            if (!loaded.map) return;
-            // The same content hash with another detail or place: left from a bake with other options.
-            if (loaded.map->faceSize != options.faceSize || loaded.map->position != positions[i]) return;
+            if (!loaded.map || !wanted(loaded.map->faceSize, loaded.map->position)) return;
             maps[i] = pack(*loaded.map);
+            savePacked(store->packedFile(i), *key, *maps[i]);
         });
         for (std::size_t i = 0; i < damage.size(); ++i)
             if (!damage[i].empty()) result.damaged.push_back(store->file(i).string() + ": " + damage[i]);
@@ -51,6 +60,8 @@ BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> po
         // Packed from what a later run will load (half floats), so that both runs show the same pictures bit for bit.
         std::optional<ReferenceMap> stored = store ? store->load(i).map : std::nullopt;
         maps[i] = pack(stored ? *stored : map);
+        if (const auto key = store ? packedFileKey(store->file(i), store->contentHash()) : std::nullopt)
+            savePacked(store->packedFile(i), *key, *maps[i]);
         ++result.baked;
         if (carryOn) result.complete = carryOn(++done, positions.size()) || done == positions.size();
     }

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "reflection/reference_maps/CubeMapping.h"
 
@@ -66,6 +67,21 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
     }
 }
 
+PackedReferenceMap::PackedReferenceMap(const glm::dvec3& position, float radianceScale, std::vector<Level> levels)
+    : position_(position), radianceScale_(radianceScale), levels_(std::move(levels)) {}
+
+PackedReferenceMap::Level::Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words, std::vector<std::uint16_t> chroma)
+    : faceSize_(faceSize), radianceScale_(radianceScale), words_(std::move(words)), chroma_(std::move(chroma)) {}
+
+std::size_t PackedReferenceMap::Level::wordBytes(int faceSize) {
+    const auto m = static_cast<std::size_t>(faceSize + 2);
+    return (6 * m * m * 5 + 1) / 2 + 4;
+}
+
+std::size_t PackedReferenceMap::Level::chromaCount(int faceSize) {
+    return 6 * static_cast<std::size_t>((faceSize + 2 + 3) / 4) * static_cast<std::size_t>((faceSize + 2) / 2) + 1;
+}
+
 const PackedReferenceMap::Level& PackedReferenceMap::levelFor(int localFaceSize) const {
     std::size_t level = 0;
     while (level + 1 < levels_.size() && levels_[level + 1].faceSize() >= 2 * localFaceSize) ++level;
@@ -88,9 +104,8 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
     : faceSize_(map.faceSize), radianceScale_(radianceScale) {
     const int n = faceSize_;
     const int m = n + 2;
-    const std::size_t bordered = 6 * static_cast<std::size_t>(m) * static_cast<std::size_t>(m);
-    words_.assign((bordered * 5 + 1) / 2 + 4, 0);
-    chroma_.assign(6 * static_cast<std::size_t>(chromaColumns()) * static_cast<std::size_t>(m / 2) + 1, 0);
+    words_.assign(wordBytes(n), 0);
+    chroma_.assign(chromaCount(n), 0);
 
     // Where a bordered texel takes its content from: its own face, or across an edge the texel that its direction meets.
     const auto source = [&](int face, int x, int y) {

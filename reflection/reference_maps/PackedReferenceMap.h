@@ -31,6 +31,10 @@ class PackedReferenceMap {
     class Level {
       public:
         Level(const ReferenceMap& map, float radianceScale);
+        /// From bytes that `words` and `chroma` gave; their sizes must be those of this face size.
+        Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words, std::vector<std::uint16_t> chroma);
+        static std::size_t wordBytes(int faceSize);     ///< padding included
+        static std::size_t chromaCount(int faceSize);   ///< padding included
         int faceSize() const { return faceSize_; }
         const std::uint8_t* words() const { return words_.data(); }
         const std::uint16_t* chroma() const { return chroma_.data(); }
@@ -59,6 +63,9 @@ class PackedReferenceMap {
     /// `radianceScale`: greatest R+G+B that can be told apart; greater values are clamped. Face size must be even and
     /// at least 4; negative and NaN colours count as 0. Throws std::invalid_argument otherwise. Cost: linear in texels.
     PackedReferenceMap(const ReferenceMap& map, float radianceScale);
+
+    /// From levels that were packed before, finest first. Precondition: not empty.
+    PackedReferenceMap(const glm::dvec3& position, float radianceScale, std::vector<Level> levels);
 
     const glm::dvec3& position() const { return position_; }
     float radianceScale() const { return radianceScale_; }

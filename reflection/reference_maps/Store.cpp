@@ -35,26 +35,27 @@ std::string hex(std::uint64_t value) {
 /// Pixel in OpenEXR's picture for every texel of ours.
 std::vector<std::size_t> pictureIndex(int n) {
     const Imath::Box2i window(Imath::V2i(0, 0), Imath::V2i(n - 1, 6 * n - 1));
+    // OpenEXR counts 0 .. n-1 from edge to edge; ask it for the direction that it gives this texel's number, drawn in a
+    // little so that an edge texel does not slip onto the next face.
+    const auto pixel = [&](const CubeFace& f, int x, int y) {
+        const float inside = 1 - 1e-4f;
+        const float s = (2.0f * static_cast<float>(x) / static_cast<float>(n - 1) - 1) * inside;
+        const float t = (2.0f * static_cast<float>(y) / static_cast<float>(n - 1) - 1) * inside;
+        const glm::vec3 d = f.major + s * f.sAxis + t * f.tAxis;
+        Imf::CubeMapFace exrFace;
+        Imath::V2f within;
+        Imf::CubeMap::faceAndPixelPosition(Imath::V3f(d.x, d.y, d.z), window, exrFace, within);
+        const Imath::V2f at = Imf::CubeMap::pixelPosition(exrFace, window, within);
+        return std::lround(at.y) * n + std::lround(at.x);
+    };
     std::vector<std::size_t> index(6 * static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     std::size_t i = 0;
-    for (int face = 0; face < 6; ++face) {
-        const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
-        for (int y = 0; y < n; ++y) {
-            for (int x = 0; x < n; ++x, ++i) {
-                // OpenEXR counts 0 .. n-1 from edge to edge; ask it for the direction that it gives this texel's number,
-                // drawn in a little so that an edge texel does not slip onto the next face.
-                const float inside = 1 - 1e-4f;
-                const float s = (2.0f * static_cast<float>(x) / static_cast<float>(n - 1) - 1) * inside;
-                const float t = (2.0f * static_cast<float>(y) / static_cast<float>(n - 1) - 1) * inside;
-                const glm::vec3 d = f.major + s * f.sAxis + t * f.tAxis;
-                Imf::CubeMapFace exrFace;
-                Imath::V2f within;
-                Imf::CubeMap::faceAndPixelPosition(Imath::V3f(d.x, d.y, d.z), window, exrFace, within);
-                const Imath::V2f at = Imf::CubeMap::pixelPosition(exrFace, window, within);
-                index[i] = static_cast<std::size_t>(std::lround(at.y)) * static_cast<std::size_t>(n) +
-                           static_cast<std::size_t>(std::lround(at.x));
-            }
-        }
+    for (const CubeFace& f : cubeFaces) {
+        // Faces are only turned and mirrored: a corner and two steps tell the rest.
+        const long corner = pixel(f, 0, 0);
+        const long alongX = (pixel(f, n - 1, 0) - corner) / (n - 1), alongY = (pixel(f, 0, n - 1) - corner) / (n - 1);
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x, ++i) index[i] = static_cast<std::size_t>(corner + x * alongX + y * alongY);
     }
     return index;
 }
@@ -82,6 +83,8 @@ std::filesystem::path ReferenceMapStore::file(std::size_t index) const {
     name << "map_" << std::setfill('0') << std::setw(5) << index << ".exr";
     return folder_ / name.str();
 }
+
+std::filesystem::path ReferenceMapStore::packedFile(std::size_t index) const { return file(index).replace_extension(".packed"); }
 
 void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
     const std::filesystem::path target = file(index);

@@ -41,6 +41,9 @@ class ReferenceMapStore {
     void savePlan(const Plan& plan) const;
 
     std::filesystem::path file(std::size_t index) const;
+    /// Where the packed copy of a map lies (see PackedFile).
+    std::filesystem::path packedFile(std::size_t index) const;
+    std::uint64_t contentHash() const { return contentHash_; }
     const std::filesystem::path& folder() const { return folder_; }
 
   private:
