@@ -11,6 +11,7 @@ std::vector<Bench> allBenches() {
     return {
         {{"cars", "frame time and error against the number of mirroring cars, every method on the same frames"}, benchCars},
         {{"localmap", "one local map by every method, against re-rendering its six faces"}, benchLocalMap},
+        {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out"}, benchStills},
         {{"tracer", "rays per second against heightfields, with an exact check; beside Embree"},
          benchTracer}};
 }
@@ -23,7 +24,7 @@ Command benchCommand() {
     return {.name = "bench",
             .summary = "measurements, as a table and as --json",
             .groups = cityOptions | trafficOptions | reflectionOptions | pictureOptions | durationOptions |
-                      jsonOptions,
+                      jsonOptions | outOptions,
             .benches = names,
             .run = [](const Options& options) {
                 for (const Bench& bench : allBenches())

@@ -15,6 +15,7 @@ struct Bench {
 };
 
 int benchCars(const Options& options);
+int benchStills(const Options& options);
 int benchTracer(const Options& options);
 int benchLocalMap(const Options& options);
 

@@ -9,12 +9,12 @@
 #include <optional>
 #include <set>
 
+#include "app/commands/MirrorMask.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/render/Readback.h"
 #include "app/report/Progress.h"
-#include "reflection/gl/LocalMapAtlas.h"
 #include "reflection/truth/ImageError.h"
 
 namespace app {
@@ -108,54 +108,6 @@ class Cast {
     std::set<std::uint32_t> kept_;
 };
 
-using Pixels = std::vector<glm::vec3>;
-
-Pixels toFloat(const Image8& image) {
-    Pixels pixels(image.rgba.size() / 4);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        pixels[i] = glm::vec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0f;
-    return pixels;
-}
-
-/// Pixels in which a vehicle mirrors something: those that differ between a black and a white surrounding.
-class MirrorMask {
-  public:
-    MirrorMask() {
-        reflection::LocalMap map;
-        map.resize(reflection::localMapFaceSizes.back());
-        atlas_.reserve(static_cast<int>(reflection::localMapFaceSizes.size()) - 1, 2);
-        for (int shade = 0; shade < 2; ++shade) {
-            for (std::vector<float>* plane : {&map.red, &map.green, &map.blue})
-                std::fill(plane->begin(), plane->end(), 4.0f * static_cast<float>(shade));
-            reflection::PackedMips mips;
-            reflection::packMips(map, mips);
-            atlas_.upload(slot(shade), mips);
-        }
-    }
-
-    std::vector<unsigned char> of(SceneRenderer& renderer, const FrameScene& scene, const OffscreenTarget& target) {
-        Image8 images[2];
-        for (int shade = 0; shade < 2; ++shade) {
-            VehicleReflections reflections;
-            reflections.textures = atlas_.textures();
-            reflections.slots.assign(scene.vehicles.size(), slot(shade));
-            renderer.drawView(scene.views.front(), reflections, target.framebuffer());
-            images[shade] = readPixels(target.framebuffer(), target.size());
-        }
-        std::vector<unsigned char> mask(images[0].rgba.size() / 4);
-        for (std::size_t i = 0; i < mask.size(); ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-                if (images[0].rgba[4 * i + c] != images[1].rgba[4 * i + c]) mask[i] = 1;
-        return mask;
-    }
-
-  private:
-    static reflection::LocalMapSlot slot(int layer) {
-        return {static_cast<std::int16_t>(reflection::localMapFaceSizes.size() - 1), static_cast<std::int16_t>(layer)};
-    }
-    reflection::LocalMapAtlas atlas_;
-};
-
 struct MethodRun {
     std::string name;
     std::unique_ptr<ReflectionEngine> engine;
@@ -228,10 +180,10 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             }
             if (measured) {
                 const std::vector<unsigned char> mask = mirrors.of(renderer, picture, target);
-                const Pixels truth = toFloat(images.back());
+                const std::vector<glm::vec3> truth = toFloat(images.back());
                 const int width = options.resolution.x, height = options.resolution.y;
                 for (std::size_t m = 0; m < methods.size(); ++m) {
-                    const Pixels test = toFloat(images[m]);
+                    const std::vector<glm::vec3> test = toFloat(images[m]);
                     methods[m].psnrSum += reflection::psnr({width, height, test}, {width, height, truth}, mask);
                     methods[m].flipSum +=
                         reflection::meanError(reflection::flip({width, height, test}, {width, height, truth}), mask);

@@ -204,12 +204,21 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
     HWY_ALIGN float texelS[HWY_MAX_BYTES / sizeof(float)];
     HWY_ALIGN float texelT[HWY_MAX_BYTES / sizeof(float)];
 
+    int column = 0, row = 0;
     for (std::size_t first = 0; first < texels; first += lanes) {
         const std::size_t count = std::min(lanes, texels - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t texel = first + std::min(lane, count - 1);
-            texelS[lane] = (static_cast<float>(texel % static_cast<std::size_t>(n)) + 0.5f) * texelSize - 1;
-            texelT[lane] = (static_cast<float>(texel / static_cast<std::size_t>(n)) + 0.5f) * texelSize - 1;
+            // Lanes past the last texel repeat it.
+            texelS[lane] = (static_cast<float>(column) + 0.5f) * texelSize - 1;
+            texelT[lane] = (static_cast<float>(row) + 0.5f) * texelSize - 1;
+            if (lane + 1 < count && ++column == n) {
+                column = 0;
+                ++row;
+            }
+        }
+        if (++column == n) {
+            column = 0;
+            ++row;
         }
         const VF s = hn::Load(d, texelS), t = hn::Load(d, texelT);
         const auto along = [&](float major, float sAxis, float tAxis) {
