@@ -13,6 +13,8 @@ namespace {
 /// Marks a lattice point not traced yet; no ray gives a negative reciprocal.
 constexpr float unknown = -1;
 constexpr float requested = -2;
+/// More would overflow a quad's coordinates and fill 128 MB.
+constexpr int greatestLattice = 4096;
 
 bool depthsDiffer(const std::array<float, 4>& w, float ratio) {
     // Z is the reciprocal of w, so max Z / min Z - 1 = max w / min w - 1.
@@ -59,8 +61,8 @@ void LocalMapMesh::traceRequested(const GridTracer& tracer, const glm::vec3& cen
 }
 
 void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int face, const MeshOptions& options) {
-    const int base = std::max(1, options.baseCells);
     const int depth = std::clamp(options.depth, 0, 8);
+    const int base = std::clamp(options.baseCells, 1, greatestLattice >> depth);
     lattice_ = base << depth;
     rays_ = 0;
     quads_.clear();

@@ -40,7 +40,7 @@ class LocalMapMesh {
         float centre;     ///< 1/t at the middle
     };
 
-    /// Cost: one ray a new lattice point. Degenerate options (baseCells < 1, depth outside 0..8) are clamped.
+    /// Cost: one ray a new lattice point. Degenerate options (baseCells < 1 or a lattice of more than 4096, depth outside 0..8) are clamped.
     void build(const GridTracer& tracer, const glm::vec3& centre, int face, const MeshOptions& options);
 
     std::span<const Quad> quads() const { return quads_; }

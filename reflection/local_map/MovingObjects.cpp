@@ -36,7 +36,8 @@ Corner between(const Corner& a, const Corner& b, float depth) {
 /// Twice the signed area of (a, b, p).
 float edge(const Projected& a, const Projected& b, float x, float y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); }
 
-bool topLeft(const Projected& a, const Projected& b) { return (a.y == b.y && b.x < a.x) || b.y > a.y; }
+/// With y down and the inside positive, top edges run towards +x and left ones towards -y.
+bool topLeft(const Projected& a, const Projected& b) { return (a.y == b.y && b.x > a.x) || b.y < a.y; }
 
 class FaceRaster {
   public:
@@ -45,8 +46,6 @@ class FaceRaster {
     std::uint32_t written() const { return written_; }
 
     void triangle(const Corner& a, const Corner& b, const Corner& c) {
-        // A cube face is seen from inside with t downwards, as a picture is: counter-clockwise in the world stays so on a face whose
-        // axes (s, t, major) are left-handed, which all six of OpenGL's are; the area is then negative in (x, y) with y down.
         std::array<Corner, 4> polygon;
         std::size_t count = 0;
         const std::array<const Corner*, 3> in{&a, &b, &c};
@@ -71,13 +70,11 @@ class FaceRaster {
         return {(c.at.x * reciprocal + 1) * half, (c.at.y * reciprocal + 1) * half, reciprocal, c.radiance * reciprocal};
     }
 
-    void fill(const Projected& a, const Projected& cornerB, const Projected& cornerC) {
-        const float area = edge(a, cornerB, cornerC.x, cornerC.y);
-        if (!(area < 0)) return;  // seen from behind, or no area, or not finite
-        // Turned round so that the inside is positive.
-        const Projected& b = cornerC;
-        const Projected& c = cornerB;
-        const float inverse = -1 / area;
+    void fill(const Projected& a, const Projected& b, const Projected& c) {
+        // On all six faces s x t = -major, towards the centre: what is counter-clockwise seen from there has a positive area in (s, t).
+        const float area = edge(a, b, c.x, c.y);
+        if (!(area > 0)) return;  // seen from behind, or no area, or not finite
+        const float inverse = 1 / area;
         const auto limit = static_cast<float>(size_);
         const auto first = [&](float least) { return static_cast<int>(std::ceil(std::clamp(least - 0.5f, 0.0f, limit))); };
         const auto last = [&](float most) { return static_cast<int>(std::floor(std::clamp(most - 0.5f, -1.0f, limit - 1))); };
