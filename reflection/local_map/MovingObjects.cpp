@@ -22,9 +22,12 @@ struct Corner {
     glm::vec3 radiance;
 };
 
-/// A corner on the face: texel coordinates, reciprocal depth and radiance over depth (all linear over the face).
+/// A corner on the face: texel coordinates, reciprocal depth and radiance over depth (all linear over the
+/// face). Corners cut at the near limit lie hundreds of texels outside, where the areas of a float are too
+/// coarse for a thin triangle.
 struct Projected {
-    float x, y, reciprocal;
+    double x, y;
+    float reciprocal;
     glm::vec3 radiance;
 };
 
@@ -34,10 +37,14 @@ Corner between(const Corner& a, const Corner& b, float depth) {
 }
 
 /// Twice the signed area of (a, b, p).
-float edge(const Projected& a, const Projected& b, float x, float y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); }
+double edge(const Projected& a, const Projected& b, double x, double y) {
+    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+}
 
 /// With y down and the inside positive, top edges run towards +x and left ones towards -y.
-bool topLeft(const Projected& a, const Projected& b) { return (a.y == b.y && b.x > a.x) || b.y < a.y; }
+bool topLeft(const Projected& a, const Projected& b) {
+    return (a.y == b.y && b.x > a.x) || b.y < a.y;
+}
 
 class FaceRaster {
   public:
@@ -66,31 +73,41 @@ class FaceRaster {
   private:
     Projected project(const Corner& c) const {
         const float reciprocal = 1 / c.at.z;
-        const float half = 0.5f * static_cast<float>(size_);
-        return {(c.at.x * reciprocal + 1) * half, (c.at.y * reciprocal + 1) * half, reciprocal, c.radiance * reciprocal};
+        const double half = 0.5 * size_, z = static_cast<double>(c.at.z);
+        return {(c.at.x / z + 1) * half, (c.at.y / z + 1) * half, reciprocal, c.radiance * reciprocal};
     }
 
     void fill(const Projected& a, const Projected& b, const Projected& c) {
-        // On all six faces s x t = -major, towards the centre: what is counter-clockwise seen from there has a positive area in (s, t).
-        const float area = edge(a, b, c.x, c.y);
+        // On all six faces s x t = -major, towards the centre: what is counter-clockwise seen from there has
+        // a positive area in (s, t).
+        const double area = edge(a, b, c.x, c.y);
         if (!(area > 0)) return;  // seen from behind, or no area, or not finite
-        const float inverse = 1 / area;
-        const auto limit = static_cast<float>(size_);
-        const auto first = [&](float least) { return static_cast<int>(std::ceil(std::clamp(least - 0.5f, 0.0f, limit))); };
-        const auto last = [&](float most) { return static_cast<int>(std::floor(std::clamp(most - 0.5f, -1.0f, limit - 1))); };
+        const double inverse = 1 / area;
+        const auto limit = static_cast<double>(size_);
+        const auto first = [&](double least) {
+            return static_cast<int>(std::ceil(std::clamp(least - 0.5, 0.0, limit)));
+        };
+        const auto last = [&](double most) {
+            return static_cast<int>(std::floor(std::clamp(most - 0.5, -1.0, limit - 1)));
+        };
         const int x0 = first(std::min({a.x, b.x, c.x})), x1 = last(std::max({a.x, b.x, c.x}));
         const int y0 = first(std::min({a.y, b.y, c.y})), y1 = last(std::max({a.y, b.y, c.y}));
         const bool ownsA = topLeft(b, c), ownsB = topLeft(c, a), ownsC = topLeft(a, b);
         for (int y = y0; y <= y1; ++y) {
             for (int x = x0; x <= x1; ++x) {
-                const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
-                const float wa = edge(b, c, px, py), wb = edge(c, a, px, py), wc = edge(a, b, px, py);
-                if (wa < 0 || wb < 0 || wc < 0 || (wa == 0 && !ownsA) || (wb == 0 && !ownsB) || (wc == 0 && !ownsC)) continue;
-                const float reciprocal = (wa * a.reciprocal + wb * b.reciprocal + wc * c.reciprocal) * inverse;
-                const float depth = 1 / reciprocal;
-                const std::size_t i = offset_ + static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+                const double px = x + 0.5, py = y + 0.5;
+                const double ea = edge(b, c, px, py), eb = edge(c, a, px, py), ec = edge(a, b, px, py);
+                if (ea < 0 || eb < 0 || ec < 0 || (ea == 0 && !ownsA) || (eb == 0 && !ownsB) ||
+                    (ec == 0 && !ownsC))
+                    continue;
+                const auto wa = static_cast<float>(ea * inverse), wb = static_cast<float>(eb * inverse),
+                           wc = static_cast<float>(ec * inverse);
+                const float depth = 1 / (wa * a.reciprocal + wb * b.reciprocal + wc * c.reciprocal);
+                const std::size_t i = offset_ +
+                                      static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) +
+                                      static_cast<std::size_t>(x);
                 if (!(depth < map_.depth[i])) continue;
-                const glm::vec3 radiance = (wa * a.radiance + wb * b.radiance + wc * c.radiance) * (inverse * depth);
+                const glm::vec3 radiance = (wa * a.radiance + wb * b.radiance + wc * c.radiance) * depth;
                 map_.red[i] = radiance.r;
                 map_.green[i] = radiance.g;
                 map_.blue[i] = radiance.b;
@@ -128,7 +145,8 @@ std::uint32_t drawMovingObjects(std::span<const MovingObject> objects, int face,
         }
         if (!ahead || allOutside[0] || allOutside[1] || allOutside[2] || allOutside[3]) continue;
         for (std::size_t k = 0; k + 2 < object.indices.size(); k += 3)
-            raster.triangle(corners[object.indices[k]], corners[object.indices[k + 1]], corners[object.indices[k + 2]]);
+            raster.triangle(corners[object.indices[k]], corners[object.indices[k + 1]],
+                            corners[object.indices[k + 2]]);
     }
     return raster.written();
 }

