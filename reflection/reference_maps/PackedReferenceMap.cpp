@@ -31,7 +31,8 @@ std::uint32_t encodeSum(float relative, std::uint32_t dither) {
     const std::uint32_t lowest = sumExponentBias << 23;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(relative);
     if (!(relative > 0) || bits <= lowest) return 0;
-    return std::min(greatestSum, (bits - lowest + (dither & ((1u << sumMantissaShift) - 1))) >> sumMantissaShift);
+    return std::min(greatestSum,
+                    (bits - lowest + (dither & ((1u << sumMantissaShift) - 1))) >> sumMantissaShift);
 }
 
 float decodeSum(std::uint32_t code) {
@@ -46,7 +47,12 @@ std::uint32_t encodeNearness(float nearness) {
     return std::min(PackedReferenceMap::nearnessMask, (bits - lowest + 0x8000u) >> 16);
 }
 
-float finiteOrZero(float x) { return x > 0 ? std::min(x, std::numeric_limits<float>::max()) : 0.0f; }
+/// Small enough for the sums of a block of colours, and 255 times them, to stay finite.
+constexpr float greatestColour = 1e30f;
+
+float finiteOrZero(float x) {
+    return x > 0 ? std::min(x, greatestColour) : 0.0f;
+}
 
 }  // namespace
 
@@ -107,7 +113,8 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
     words_.assign(wordBytes(n), 0);
     chroma_.assign(chromaCount(n), 0);
 
-    // Where a bordered texel takes its content from: its own face, or across an edge the texel that its direction meets.
+    // Where a bordered texel takes its content from: its own face, or across an edge the texel that its
+    // direction meets.
     const auto source = [&](int face, int x, int y) {
         if (x < 0 || y < 0 || x >= n || y >= n) {
             const CubePoint p = cubePoint(cubeDirection(face, glm::vec2(x, y) + 0.5f, n));
@@ -123,7 +130,9 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
                static_cast<std::size_t>(x);
     };
 
-    const auto directionLength = [n](int x, int y) { return glm::length(cubeDirection(0, glm::vec2(x, y) + 0.5f, n)); };
+    const auto directionLength = [n](int x, int y) {
+        return glm::length(cubeDirection(0, glm::vec2(x, y) + 0.5f, n));
+    };
 
     for (int face = 0; face < 6; ++face) {
         for (int by = 0; by < m / 2; ++by) {
@@ -150,9 +159,11 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
                     if (index % 2 == 0) {
                         words_[byte] = static_cast<std::uint8_t>(word);
                         words_[byte + 1] = static_cast<std::uint8_t>(word >> 8);
-                        words_[byte + 2] = static_cast<std::uint8_t>((words_[byte + 2] & 0xf0u) | (word >> 16));
+                        words_[byte + 2] =
+                            static_cast<std::uint8_t>((words_[byte + 2] & 0xf0u) | (word >> 16));
                     } else {
-                        words_[byte] = static_cast<std::uint8_t>((words_[byte] & 0x0fu) | ((word & 0xfu) << 4));
+                        words_[byte] =
+                            static_cast<std::uint8_t>((words_[byte] & 0x0fu) | ((word & 0xfu) << 4));
                         words_[byte + 1] = static_cast<std::uint8_t>(word >> 4);
                         words_[byte + 2] = static_cast<std::uint8_t>(word >> 12);
                     }
@@ -160,7 +171,8 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
                 const auto share = [all](float part) {
                     return all > 0 ? static_cast<std::uint32_t>(std::lround(255.0f * part / all)) : 85u;
                 };
-                chroma_[chromaIndex(face, 4 * bx - 1, 2 * by - 1)] = static_cast<std::uint16_t>(share(red) | (share(blue) << 8));
+                chroma_[chromaIndex(face, 4 * bx - 1, 2 * by - 1)] =
+                    static_cast<std::uint16_t>(share(red) | (share(blue) << 8));
             }
         }
     }
@@ -168,12 +180,14 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
 
 std::size_t PackedReferenceMap::Level::borderedIndex(int face, int x, int y) const {
     const auto m = static_cast<std::size_t>(faceSize_ + 2);
-    return (static_cast<std::size_t>(face) * m + static_cast<std::size_t>(y + 1)) * m + static_cast<std::size_t>(x + 1);
+    return (static_cast<std::size_t>(face) * m + static_cast<std::size_t>(y + 1)) * m +
+           static_cast<std::size_t>(x + 1);
 }
 
 std::size_t PackedReferenceMap::Level::chromaIndex(int face, int x, int y) const {
     const auto rows = static_cast<std::size_t>(faceSize_ + 2) / 2;
-    return (static_cast<std::size_t>(face) * rows + static_cast<std::size_t>((y + 1) / 2)) * static_cast<std::size_t>(chromaColumns()) +
+    return (static_cast<std::size_t>(face) * rows + static_cast<std::size_t>((y + 1) / 2)) *
+               static_cast<std::size_t>(chromaColumns()) +
            static_cast<std::size_t>((x + 1) / 4);
 }
 
@@ -185,7 +199,8 @@ std::uint32_t PackedReferenceMap::Level::wordAt(std::size_t index) const {
 }
 
 float PackedReferenceMap::Level::nearnessAt(int face, int x, int y) const {
-    return std::bit_cast<float>(((wordAt(borderedIndex(face, x, y)) & nearnessMask) << 16) + (nearnessExponentBias << 23));
+    return std::bit_cast<float>(((wordAt(borderedIndex(face, x, y)) & nearnessMask) << 16) +
+                                (nearnessExponentBias << 23));
 }
 
 float PackedReferenceMap::Level::distanceAt(int face, int x, int y) const {

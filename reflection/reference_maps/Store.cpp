@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfVecAttribute.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -24,12 +25,31 @@ namespace {
 
 constexpr const char* hashAttribute = "mirrorstreetContent";
 constexpr const char* positionAttribute = "mirrorstreetPosition";
+constexpr const char* checksumAttribute = "mirrorstreetChecksum";
 constexpr int greatestFace = 8192;
 
 std::string hex(std::uint64_t value) {
     std::ostringstream text;
     text << std::hex << std::setfill('0') << std::setw(16) << value;
     return text.str();
+}
+
+/// Of all that a map consists of, as it is stored (FNV-1a over 32-bit words). OpenEXR has none of its own: it
+/// would take a changed byte in the position or in a block that did not compress.
+std::uint64_t checksumOf(const ReferenceMap& map) {
+    std::uint64_t sum = 14695981039346656037ULL;
+    const auto add = [&sum](std::uint64_t word) { sum = (sum ^ (word & 0xffffffffu)) * 1099511628211ULL; };
+    for (int k = 0; k < 3; ++k) {
+        const auto bits = std::bit_cast<std::uint64_t>(map.position[k]);
+        add(bits);
+        add(bits >> 32);
+    }
+    add(static_cast<std::uint64_t>(map.faceSize));
+    for (std::size_t i = 0; i < map.texelCount(); ++i) {
+        for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint32_t>(map.colour[i][k]));
+        add(std::bit_cast<std::uint32_t>(map.distance[i]));
+    }
+    return sum;
 }
 
 /// Pixel in OpenEXR's picture for every texel of ours.
@@ -65,7 +85,9 @@ void renameInto(const std::filesystem::path& aside, const std::filesystem::path&
     std::filesystem::rename(aside, file, error);
     if (error) {
         std::filesystem::remove(aside, error);
-        throw std::runtime_error(file.string() + ": the finished file could not be put in place; check that the folder is writable");
+        throw std::runtime_error(
+            file.string() +
+            ": the finished file could not be put in place; check that the folder is writable");
     }
 }
 
@@ -98,12 +120,14 @@ void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
     const std::vector<std::size_t> picture = pictureIndex(n);
     std::vector<Imath::half> red(map.texelCount()), green(map.texelCount()), blue(map.texelCount());
     std::vector<float> distance(map.texelCount());
+    ReferenceMap stored = map;
     for (std::size_t i = 0; i < map.texelCount(); ++i) {
         const auto half = [](float x) { return Imath::half(std::min(x, 65504.0f)); };
         red[picture[i]] = half(map.colour[i].r);
         green[picture[i]] = half(map.colour[i].g);
         blue[picture[i]] = half(map.colour[i].b);
         distance[picture[i]] = map.distance[i];
+        stored.colour[i] = {red[picture[i]], green[picture[i]], blue[picture[i]]};
     }
 
     const std::filesystem::path aside = asideOf(target);
@@ -112,11 +136,14 @@ void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
         header.compression() = Imf::ZIP_COMPRESSION;
         Imf::addEnvmap(header, Imf::ENVMAP_CUBE);
         header.insert(hashAttribute, Imf::StringAttribute(hex(contentHash_)));
-        header.insert(positionAttribute, Imf::V3dAttribute(Imath::V3d(map.position.x, map.position.y, map.position.z)));
+        header.insert(checksumAttribute, Imf::StringAttribute(hex(checksumOf(stored))));
+        header.insert(positionAttribute,
+                      Imf::V3dAttribute(Imath::V3d(map.position.x, map.position.y, map.position.z)));
         Imf::FrameBuffer pixels;
         const auto add = [&](const char* name, Imf::PixelType type, void* data, std::size_t size) {
             header.channels().insert(name, Imf::Channel(type));
-            pixels.insert(name, Imf::Slice(type, static_cast<char*>(data), size, size * static_cast<std::size_t>(n)));
+            pixels.insert(
+                name, Imf::Slice(type, static_cast<char*>(data), size, size * static_cast<std::size_t>(n)));
         };
         add("R", Imf::HALF, red.data(), sizeof(Imath::half));
         add("G", Imf::HALF, green.data(), sizeof(Imath::half));
@@ -142,7 +169,8 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         const Imf::Header& header = in.header();
         const auto* hash = header.findTypedAttribute<Imf::StringAttribute>(hashAttribute);
         const auto* position = header.findTypedAttribute<Imf::V3dAttribute>(positionAttribute);
-        if (!hash || hash->value() != hex(contentHash_)) return {std::nullopt, "made from another city or light"};
+        if (!hash || hash->value() != hex(contentHash_))
+            return {std::nullopt, "made from another city or light"};
         if (!position || !std::isfinite(position->value().x + position->value().y + position->value().z))
             return {std::nullopt, "has no position"};
         const Imath::Box2i window = header.dataWindow();
@@ -150,7 +178,8 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         if (n < 4 || n % 2 != 0 || n > greatestFace || window.max.y - window.min.y + 1 != 6 * n)
             return {std::nullopt, "is not six even square faces"};
         for (const char* channel : {"R", "G", "B", "Z"})
-            if (!header.channels().findChannel(channel)) return {std::nullopt, std::string("lacks channel ") + channel};
+            if (!header.channels().findChannel(channel))
+                return {std::nullopt, std::string("lacks channel ") + channel};
 
         ReferenceMap map;
         map.faceSize = n;
@@ -162,7 +191,8 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
             planes[c].resize(map.texelCount());
             const std::size_t stride = sizeof(float) * static_cast<std::size_t>(n);
             // OpenEXR counts from pixel (0, 0) even when the window starts elsewhere.
-            char* origin = reinterpret_cast<char*>(planes[c].data()) - static_cast<std::ptrdiff_t>(window.min.x) * 4 -
+            char* origin = reinterpret_cast<char*>(planes[c].data()) -
+                           static_cast<std::ptrdiff_t>(window.min.x) * 4 -
                            static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(stride);
             pixels.insert(names[c], Imf::Slice(Imf::FLOAT, origin, sizeof(float), stride));
         }
@@ -175,8 +205,12 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         for (std::size_t i = 0; i < map.texelCount(); ++i) {
             map.colour[i] = {planes[0][picture[i]], planes[1][picture[i]], planes[2][picture[i]]};
             map.distance[i] = planes[3][picture[i]];
-            if (std::isnan(map.distance[i]) || map.distance[i] < 0) return {std::nullopt, "holds a distance that is not a distance"};
+            if (std::isnan(map.distance[i]) || map.distance[i] < 0)
+                return {std::nullopt, "holds a distance that is not a distance"};
         }
+        const auto* checksum = header.findTypedAttribute<Imf::StringAttribute>(checksumAttribute);
+        if (!checksum || checksum->value() != hex(checksumOf(map)))
+            return {std::nullopt, "does not match its checksum"};
         return {std::move(map), {}};
     } catch (const std::exception& e) {
         return {std::nullopt, e.what()};
@@ -190,13 +224,14 @@ void ReferenceMapStore::savePlan(const Plan& plan) const {
     const std::filesystem::path aside = asideOf(target);
     {
         std::ofstream out(aside);
-        out << "mirrorstreet-plan 1 " << hex(contentHash_) << ' ' << plan.positions.size() << ' ' << std::setprecision(17)
-            << plan.coverage << '\n';
+        out << "mirrorstreet-plan 1 " << hex(contentHash_) << ' ' << plan.positions.size() << ' '
+            << std::setprecision(17) << plan.coverage << '\n';
         for (const glm::dvec3& p : plan.positions) out << p.x << ' ' << p.y << ' ' << p.z << '\n';
         out << "end\n";
         if (!out.flush())
             throw std::runtime_error(target.string() +
-                                     ": the list of reference maps could not be written; check free space and permissions or choose "
+                                     ": the list of reference maps could not be written; check free space "
+                                     "and permissions or choose "
                                      "another folder with --cache");
     }
     renameInto(aside, target);
@@ -208,8 +243,8 @@ std::optional<ReferenceMapStore::Plan> ReferenceMapStore::loadPlan() const {
     std::size_t count = 0;
     Plan plan;
     constexpr std::size_t most = 1'000'000;
-    if (!(in >> word >> version >> hash >> count >> plan.coverage) || word != "mirrorstreet-plan" || version != "1" ||
-        hash != hex(contentHash_) || count > most || !std::isfinite(plan.coverage))
+    if (!(in >> word >> version >> hash >> count >> plan.coverage) || word != "mirrorstreet-plan" ||
+        version != "1" || hash != hex(contentHash_) || count > most || !std::isfinite(plan.coverage))
         return std::nullopt;
     plan.positions.resize(count);
     for (glm::dvec3& p : plan.positions)

@@ -10,16 +10,17 @@
 
 namespace reflection {
 
-/// Reference maps on disk: one OpenEXR file a map with the standard `envmap` cube attribute, channels R G B (half) and Z (float distance,
-/// +infinity for sky), its position and the hash of what it was made from. Faces are oriented as OpenEXR's CubeMap asks; texel
-/// centres lie half a texel inside the face's edges, as in OpenGL.
+/// Reference maps on disk: one OpenEXR file a map with the standard `envmap` cube attribute, channels R G B
+/// (half) and Z (float distance, +infinity for sky), its position, the hash of what it was made from and a
+/// checksum. Faces are oriented as OpenEXR's CubeMap asks; texel centres lie half a texel inside the face's
+/// edges, as in OpenGL.
 ///
-/// A file appears whole or not at all (written aside, then renamed), so a killed bake leaves only good files and the next one
-/// finishes the rest. The bytes of a file depend on its map alone.
+/// A file appears whole or not at all (written aside, then renamed), so a killed bake leaves only good files
+/// and the next one finishes the rest. The bytes of a file depend on its map alone.
 class ReferenceMapStore {
   public:
-    /// `contentHash`: of everything the maps' pictures depend on; a file made from something else is not taken. The folder is
-    /// made when the first map is saved.
+    /// `contentHash`: of everything the maps' pictures depend on; a file made from something else is not
+    /// taken. The folder is made when the first map is saved.
     ReferenceMapStore(std::filesystem::path folder, std::uint64_t contentHash);
 
     struct Loaded {
@@ -32,7 +33,8 @@ class ReferenceMapStore {
     /// Throws std::runtime_error (file, cause, remedy) when the folder or file cannot be written.
     void save(std::size_t index, const ReferenceMap& map) const;
 
-    /// The positions of the placed maps, so that a second start need not place again; nullopt when absent or damaged.
+    /// The positions of the placed maps, so that a second start need not place again; nullopt when absent or
+    /// damaged.
     struct Plan {
         std::vector<glm::dvec3> positions;
         double coverage = 0;
