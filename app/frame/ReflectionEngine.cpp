@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -168,13 +169,31 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
 
 void ReflectionEngine::Impl::gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
                                               std::vector<reflection::MovingObject>& out) {
+    struct Near {
+        double squared;
+        std::uint32_t index;
+    };
+    std::vector<Near> near;
     for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
         const vehicles::VehiclePose& pose = scene.vehicles[i];
         if (i == job.vehicle || pose.model >= models.size()) continue;
         const glm::dvec3 apart = pose.position - job.centre;
-        // Fewer than four texels across (a face spans pi / 2): lost in the filter of any but the flattest mirror.
-        const double range = models[pose.model].length * faceSize / (4 * std::numbers::pi / 2);
-        if (glm::dot(apart, apart) > range * range) continue;
+        // Fewer than eight texels across (a face spans pi / 2): a blot on a body panel.
+        const double range = models[pose.model].length * faceSize / (8 * std::numbers::pi / 2);
+        const double squared = glm::dot(apart, apart);
+        if (squared <= range * range) near.push_back({squared, i});
+    }
+    // In a jam the nearest hide the rest.
+    constexpr std::size_t mostNeighbours = 12;
+    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
+        return a.squared != b.squared ? a.squared < b.squared : a.index < b.index;
+    });
+    near.resize(std::min(near.size(), mostNeighbours));
+    for (const Near& other : near) {
+        const vehicles::VehiclePose& pose = scene.vehicles[other.index];
+        const float height = models[pose.model].height;
+        if (tracer.occluded(glm::vec3(job.centre), glm::vec3(pose.position + glm::dvec3(0, 0, height)), models[pose.model].length))
+            continue;
         shadeForLocalMap(models[pose.model], pose, scene.lighting, job.centre, out.emplace_back());
     }
 }

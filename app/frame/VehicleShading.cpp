@@ -52,7 +52,9 @@ glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface, c
     const glm::vec3 reflected = 2 * glm::dot(normal, towardsEye) * normal - towardsEye;
     const float up = std::clamp(reflected.z * 2 + 0.5f, 0.0f, 1.0f);
     glm::vec3 mirrored = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, up) * (inversePi * 0.8f);
-    mirrored += lighting.sunIrradiance * (8 * std::pow(std::max(glm::dot(reflected, lighting.sunDirection), 0.0f), 128.0f) * coat);
+    float glint = std::max(glm::dot(reflected, lighting.sunDirection), 0.0f);
+    for (int doubling = 0; doubling < 7; ++doubling) glint *= glint;  // to the power of 128, as the shader does
+    mirrored += lighting.sunIrradiance * (8 * glint * coat);
     return diffuse * (1 - fresnel) + mirrored * fresnel;
 }
 
