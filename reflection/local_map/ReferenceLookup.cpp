@@ -270,7 +270,10 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
                     next = hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
                     next = hn::IfThenElse(flat, tb, next);
                 }
-                next = hn::Max(hn::Min(next, sky), hn::Mul(tb, hn::Set(d, 0.25f)));
+                // The candidate's own surface is where it is, however far the start; a secant may overshoot.
+                const VF quarter = hn::Mul(tb, hn::Set(d, 0.25f));
+                next = hn::Min(next, sky);
+                next = step == 1 ? hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, quarter) : hn::Max(next, quarter);
                 ta = tb;
                 qa = qb;
                 tb = next;
@@ -372,7 +375,7 @@ float storedDistance(const Candidate& candidate, const glm::vec3& point) {
     const PackedReferenceMap::Level& level = candidate.map->levels().front();
     const int n = level.faceSize();
     const auto texel = [n](float st) {
-        return std::clamp(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), 0, n - 1);
+        return st > -1 ? std::min(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), n - 1) : 0;  // NaN: 0
     };
     return level.distanceAt(p.face, texel(p.st.x), texel(p.st.y));
 }

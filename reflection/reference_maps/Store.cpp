@@ -209,7 +209,8 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
                 return {std::nullopt, "holds a distance that is not a distance"};
         }
         const auto* checksum = header.findTypedAttribute<Imf::StringAttribute>(checksumAttribute);
-        if (!checksum || checksum->value() != hex(checksumOf(map)))
+        if (!checksum) return {std::nullopt, "has no checksum"};
+        if (checksum->value() != hex(checksumOf(map)))
             return {std::nullopt, "does not match its checksum"};
         return {std::move(map), {}};
     } catch (const std::exception& e) {

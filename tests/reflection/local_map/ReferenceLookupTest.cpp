@@ -387,6 +387,40 @@ TEST(ReferenceLookupTest, skyStaysSkyAndCoincidentCentresReadStraight) {
     EXPECT_GT(asked, 3000);
 }
 
+TEST(ReferenceLookupTest, aStartInTheSkyComesBackToTheMapsSurface) {
+    // What a heightfield lacks (a lamp post, a wire), or a mesh has smeared over a silhouette, starts 8 km
+    // off.
+    const glm::dvec3 centre(1.3, 0.5, 1.1);
+    for (const glm::dvec3& offset : {glm::dvec3(0), glm::dvec3(-0.7, 1, 0.8), glm::dvec3(1, -5, 1.4)}) {
+        const PackedReferenceMap street = mapOf(streetScene, centre + offset, 128);
+        const Candidate candidate{&street, glm::vec3(offset)};
+        const int n = 32;
+        LocalMap map = emptyMap(n);
+        int asked = 0, wrong = 0;
+        for (int face = 0; face < 6; ++face) {
+            const std::vector<float> start(static_cast<std::size_t>(n * n), 0.0f);
+            lookUpRefined(face, start, std::span(&candidate, 1), {}, map);
+            for (int i = 0; i < n * n; ++i) {
+                const glm::dvec3 d(cubeDirection(face, glm::vec2(i % n, i / n) + 0.5f, n));
+                const SceneHit hit = streetScene(centre, d);
+                // The map must show one surface from the direction of the ray to that of the hit.
+                if (hit.surface < 0 || hit.t > 30) continue;
+                bool clean = true;
+                for (const double t : {hit.t, 1.5 * hit.t, 3 * hit.t, 10 * hit.t, 8192.0})
+                    clean =
+                        clean && isClean(streetScene, centre + offset, centre + t * d, hit.surface, 64, 3);
+                if (!clean) continue;
+                ++asked;
+                const double got = map.depth[map.faceOffset(face) + static_cast<std::size_t>(i)];
+                wrong += std::abs(got / hit.t - 1) > 2 * (0.01 + packedDepthError) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(asked, 1000);
+        // Three lookups more do not always suffice for a map as far away as the walls.
+        EXPECT_LE(wrong, glm::length(offset) > 4 ? asked / 8 : asked / 50) << offset.y;
+    }
+}
+
 TEST(ReferenceLookupTest, instructionSetsAgreeWithinRounding) {
     // No agreement asked for and one candidate: every texel makes every step, whatever its neighbours in the
     // vector do.
