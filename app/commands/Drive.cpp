@@ -18,24 +18,32 @@ Drive::Drive(const Scene& scene, const Options& options)
       lighting_(scene.lighting) {
     preparation_.cell = static_cast<float>(options.cell);
     preparation_.quiet = options.quiet;
-    if (settings_.method != ReflectionMethod::none) prepareReflecting();
 }
 
-void Drive::prepareReflecting() {
+bool Drive::startReflecting(const CarryOn& carryOn) {
+    return settings_.method == ReflectionMethod::none || reflectIn(lighting_, carryOn);
+}
+
+bool Drive::reflectIn(const Lighting& lighting, const CarryOn& carryOn) {
     FrameScene empty;
-    empty.lighting = lighting_;
+    empty.lighting = lighting;
     empty.signalColours.assign(scene_->city.signalHeads.size(), vehicles::SignalColour::red);
     renderer_->prepare(empty);
-    engine_.reset();
+    PreparationOptions preparation = preparation_;
+    preparation.carryOn = carryOn;
     const Stopwatch watch;
-    prepared_ = prepareReflections(scene_->city, lighting_, *renderer_, preparation_);
+    PreparedReflections prepared = prepareReflections(scene_->city, lighting, *renderer_, preparation);
+    if (!prepared.complete) return false;
     spdlog::info(
         "{} reference maps see {:.1f}% of what can be seen from the lanes ({} from the cache, {} drawn, "
         "{:.1f} s)",
-        prepared_.maps.size(), 100 * prepared_.coverage, prepared_.loaded, prepared_.baked,
+        prepared.maps.size(), 100 * prepared.coverage, prepared.loaded, prepared.baked,
         watch.elapsed() / 1000);
+    engine_.reset();  // before the maps that it reads
+    prepared_ = std::move(prepared);
     engine_ = std::make_unique<ReflectionEngine>(*prepared_.tracer, prepared_.maps, scene_->models,
                                                  reflectionSettings());
+    return true;
 }
 
 ReflectionSettings Drive::reflectionSettings() const {
@@ -91,26 +99,30 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     return stats;
 }
 
-void Drive::change(const DriveSettings& settings) {
+bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn) {
     const DriveSettings old = settings_;
-    settings_ = settings;
-    if (settings.cars != old.cars) traffic_ = startTraffic(*scene_, seed_, settings.cars);
-    if (settings.quality != old.quality) {
+    settings_ = wanted;
+    if (wanted.cars != old.cars) traffic_ = startTraffic(*scene_, seed_, wanted.cars);
+    if (wanted.quality != old.quality) {
         renderer_.reset();
         renderer_ = std::make_unique<SceneRenderer>(scene_->city, scene_->models, renderOptions());
     }
-    const bool relit = settings.hour != old.hour;
-    if (relit)
-        lighting_ = lightingAt(settings.hour, scene_->city.frame ? scene_->city.frame->latitude() : 50);
-    if (settings.method == ReflectionMethod::none) {
+    const bool relit = wanted.hour != old.hour;
+    const Lighting lighting =
+        relit ? lightingAt(wanted.hour, scene_->city.frame ? scene_->city.frame->latitude() : 50) : lighting_;
+    const bool reflects = wanted.method != ReflectionMethod::none;
+    bool finished = true;
+    if (reflects && (!engine_ || relit)) finished = reflectIn(lighting, carryOn);
+    if (finished) {
+        lighting_ = lighting;
         // Maps of another light are of no use later.
-        if (relit) engine_.reset();
-        return;
+        if (!reflects && relit) engine_.reset();
+    } else {
+        settings_.hour = old.hour;
+        settings_.method = engine_ ? wanted.method : ReflectionMethod::none;
     }
-    if (!engine_ || relit)
-        prepareReflecting();
-    else
-        engine_->configure(reflectionSettings());
+    if (engine_ && settings_.method != ReflectionMethod::none) engine_->configure(reflectionSettings());
+    return finished;
 }
 
 }  // namespace app

@@ -21,18 +21,25 @@ struct FrameStats {
 };
 
 /// The one way of a frame: traffic -> FrameScene -> reflections -> picture. Needs an OpenGL context current
-/// from construction to destruction; keeps a reference to the scene.
+/// from construction to destruction; keeps a reference to the scene. Vehicles have plain paint until
+/// `startReflecting`.
 class Drive {
   public:
     Drive(const Scene& scene, const Options& options);
+
+    /// Heightfield, reference maps and whatever else the method needs. False: ended by `carryOn` or an
+    /// interrupt; what is finished stays in the cache.
+    bool startReflecting(const CarryOn& carryOn = {});
 
     /// Simulates on, in the traffic's fixed steps; what is left of a step is kept for the next call.
     void advance(double seconds);
     FrameStats draw(const View& view, std::uint32_t framebuffer);
 
     const DriveSettings& settings() const { return settings_; }
-    /// Takes over what changed: other cars start the traffic anew, other quality the renderer.
-    void change(const DriveSettings& settings);
+    /// Takes over what changed: other cars start the traffic anew, other quality the renderer, another hour
+    /// asks for other reference maps. False: those were ended by `carryOn` or an interrupt, and hour and
+    /// method stay as they were.
+    bool change(const DriveSettings& wanted, const CarryOn& carryOn = {});
 
     const vehicles::Traffic& traffic() const { return traffic_; }
     const FrameScene& frame() const { return frame_; }
@@ -44,8 +51,8 @@ class Drive {
   private:
     RenderOptions renderOptions() const;
     ReflectionSettings reflectionSettings() const;
-    /// Heightfield, maps and engine for the present light.
-    void prepareReflecting();
+    /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
+    bool reflectIn(const Lighting& lighting, const CarryOn& carryOn);
 
     const Scene* scene_;
     std::uint64_t seed_;

@@ -71,12 +71,17 @@ int runOffscreenTour(const Options& options) {
     spdlog::info("drawing without a window on {}", context.renderer());
     const Scene scene = loadScene(options);
     Drive drive(scene, options);
+    TourReport report(options, context.renderer());
+    if (!drive.startReflecting()) {
+        spdlog::warn("interrupted before the first picture: the reference maps that are finished are kept");
+        report.finish(true, std::cout);
+        return exitFailed;
+    }
     const OffscreenTarget target(options.resolution);
     CameraRig camera(scene.city.tour, scene.city.bounds);
     ShotPlan shots(options.camera, scene.kinds);
     std::unique_ptr<VideoWriter> video = openVideo(options);
 
-    TourReport report(options, context.renderer());
     std::optional<std::uint32_t> frames = options.frameCount();
     std::optional<Progress> progress;
     const double frameTime = 1.0 / options.fps;

@@ -103,7 +103,12 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
 
     std::optional<reflection::ReferenceMapStore::Plan> plan;
     if (options.useCache) plan = store.loadPlan();
+    const auto goOn = [&](std::size_t done, std::size_t total) {
+        return !interrupted() && (!options.carryOn || options.carryOn(done, total));
+    };
     if (!plan) {
+        prepared.complete = goOn(0, 0);
+        if (!prepared.complete) return prepared;
         const reflection::Placement placed =
             reflection::placeReferenceMaps(*prepared.tracer, drivingPositions(city, 2), options.placement);
         plan.emplace();
@@ -115,18 +120,20 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
 
     std::optional<Progress> progress;
     std::size_t shown = 0;
-    const auto carryOn = [&](std::size_t done, std::size_t total) {
+    const auto tell = [&](std::size_t done, std::size_t total) {
         if (!progress) {
             progress.emplace("reference maps", total, options.quiet);
             shown = 0;
         }
         progress->advance(done - shown);
         shown = done;
-        return !interrupted();
+        return goOn(done, total);
     };
+    prepared.complete = goOn(0, plan->positions.size());
+    if (!prepared.complete) return prepared;
     reflection::BakeResult baked =
         reflection::bakeReferenceMaps(drawer, plan->positions, options.useCache ? &store : nullptr,
-                                      {options.faceSize, options.supersampling}, carryOn);
+                                      {options.faceSize, options.supersampling}, tell);
     for (const std::string& damage : baked.damaged) spdlog::warn("{}; it was rebuilt", damage);
     prepared.maps = std::move(baked.maps);
     prepared.loaded = baked.loaded;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,10 @@
 
 namespace app {
 
+/// Asked between reference maps, with those that are finished and all there will be; (0, 0) while their
+/// places are still being chosen. False ends the work.
+using CarryOn = std::function<bool(std::size_t done, std::size_t total)>;
+
 struct PreparationOptions {
     float cell = 1;      ///< heightfield cell, metres
     int faceSize = 256;  ///< of the reference maps, texels
@@ -23,6 +28,7 @@ struct PreparationOptions {
     bool useCache = true;
     std::filesystem::path cache;  ///< empty: the user's cache folder
     bool quiet = false;
+    CarryOn carryOn;  ///< may be empty; an interrupt ends the work in any case
 };
 
 /// What the reflections of a city need before its first frame: heightfield, tracer, reference maps.

@@ -30,12 +30,13 @@ void TourReport::finish(bool partial, std::ostream& out) const {
     const auto row = [](const std::string& name, const Timing& t) {
         return std::vector<std::string>{name, fixed(t.min, 1), fixed(t.median, 1), fixed(t.max, 1)};
     };
-    out << formatTable({{std::to_string(frame.n) + " frames, " + std::string(nameOf(options_.method)), "min",
-                         "median", "max"},
-                        row("frame, ms", frame),
-                        row("reflections, ms", reflection)})
-        << "maps rebuilt a frame: " << fixed(mapsPerFrame, 1) << "\n"
-        << "memory of maps:       " << byteSize(static_cast<double>(mapBytes_)) << "\n";
+    if (frame.n > 0)
+        out << formatTable({{std::to_string(frame.n) + " frames, " + std::string(nameOf(options_.method)),
+                             "min", "median", "max"},
+                            row("frame, ms", frame),
+                            row("reflections, ms", reflection)})
+            << "maps rebuilt a frame: " << fixed(mapsPerFrame, 1) << "\n"
+            << "memory of maps:       " << byteSize(static_cast<double>(mapBytes_)) << "\n";
     if (!options_.json) return;
     ResultFile results("tour", std::string(programVersion), renderer_);
     results.add({{"method", nameOf(options_.method)},

@@ -11,12 +11,14 @@
 
 #include "app/commands/Drive.h"
 #include "app/commands/TourReport.h"
+#include "app/display/OffscreenTarget.h"
 #include "app/display/Window.h"
 #include "app/frame/CameraRig.h"
 #include "app/frame/ShotPlan.h"
 #include "app/panel/Controls.h"
 #include "app/panel/MapView.h"
 #include "app/panel/Panel.h"
+#include "app/panel/WindowProgress.h"
 #include "app/render/Readback.h"
 #include "app/report/Picture.h"
 #include "app/report/Progress.h"
@@ -51,21 +53,24 @@ std::filesystem::path freeName(const std::filesystem::path& folder) {
 /// Everything between the window's events and its next picture.
 class WindowTour {
   public:
-    WindowTour(const Options& options, Window& window, const Scene& scene)
+    WindowTour(const Options& options, Window& window, Panel& panel, WindowProgress& progress,
+               const Scene& scene)
         : options_(options),
           window_(window),
+          panel_(panel),
+          progress_(progress),
           scene_(scene),
           drive_(scene, options),
           camera_(scene.city.tour, scene.city.bounds),
           shots_(std::nullopt, scene.kinds),
-          panel_(window),
           report_(options, window.renderer()) {
         choices_.settings = drive_.settings();
         choices_.camera = choiceOf(options.camera);
         if (options.camera) camera_.setMode(*options.camera, drive_.traffic().poses());
-        watch_.lap();
     }
 
+    /// Makes the reference maps; false: the user did not want to wait for them.
+    bool start();
     void frame();
     const TourReport& report() const { return report_; }
 
@@ -74,14 +79,21 @@ class WindowTour {
     void moveCamera(double seconds, const CameraInput& input);
     PanelNews news();
     void takeScreenshot();
+    View view(glm::ivec2 size) const {
+        return lookAt(camera_.pose().eye, camera_.pose().target, glm::radians(60.0), size);
+    }
+    /// Shows how far the reference maps are, over the street as it would look without them.
+    CarryOn showWaiting(const std::string& remark);
+    void endWaiting();
 
     Options options_;
     Window& window_;
+    Panel& panel_;
+    WindowProgress& progress_;
     const Scene& scene_;
     Drive drive_;
     CameraRig camera_;
     ShotPlan shots_;
-    Panel panel_;
     MapView mapView_;
     Controls controls_;
     PanelChoices choices_;
@@ -90,10 +102,38 @@ class WindowTour {
     FrameStats stats_;
     std::vector<float> frameMs_;
     std::vector<MapLine> mesh_;
+    std::vector<WindowEvent> waited_;  ///< keys that came up while maps were drawn
     bool looking_ = false;
     double time_ = 0;
     Stopwatch watch_;
 };
+
+CarryOn WindowTour::showWaiting(const std::string& remark) {
+    const glm::ivec2 size = window_.framebufferSize();
+    const bool longWork = choices_.settings.hour != drive_.settings().hour || drive_.engine() == nullptr;
+    if (longWork && size.x > 0 && size.y > 0) {
+        auto backdrop = std::make_unique<OffscreenTarget>(size);
+        drive_.draw(view(size), backdrop->framebuffer());
+        progress_.setBackdrop(std::move(backdrop));
+    }
+    return [this, remark](std::size_t done, std::size_t total) {
+        return progress_.show({total == 0 ? "Choosing where reference maps stand ..."
+                                          : "Drawing the street into reference maps, once: they are kept.",
+                               done, total, remark});
+    };
+}
+
+void WindowTour::endWaiting() {
+    waited_ = progress_.finish();
+    watch_.lap();
+}
+
+bool WindowTour::start() {
+    moveCamera(0, {});
+    const bool ready = drive_.startReflecting(showWaiting("Esc quits; what is finished is kept."));
+    endWaiting();
+    return ready;
+}
 
 void WindowTour::obey(const ControlResult& controls) {
     const ControlActions& actions = controls.actions;
@@ -113,10 +153,9 @@ void WindowTour::obey(const ControlResult& controls) {
         window_.captureCursor(looking_);
     }
     if (choices_.settings != drive_.settings()) {
-        window_.setTitle("mirrorstreet: preparing ...");
-        drive_.change(choices_.settings);
-        window_.setTitle("mirrorstreet");
-        watch_.lap();
+        drive_.change(choices_.settings, showWaiting("Esc goes back to the light before."));
+        choices_.settings = drive_.settings();
+        endWaiting();
     }
 }
 
@@ -187,8 +226,11 @@ void WindowTour::takeScreenshot() {
 }
 
 void WindowTour::frame() {
+    std::vector<WindowEvent> events = window_.pollEvents();
+    events.insert(events.begin(), waited_.begin(), waited_.end());
+    waited_.clear();
     const ControlResult controls =
-        controls_.update(window_.pollEvents(), panel_.takesMouse() && !looking_, panel_.takesKeys());
+        controls_.update(events, panel_.takesMouse() && !looking_, panel_.takesKeys());
     obey(controls);
     const double seconds = std::min(watch_.lap() / 1000, longestStep);
     const glm::ivec2 size = window_.framebufferSize();
@@ -206,8 +248,7 @@ void WindowTour::frame() {
     moveCamera(moving ? seconds : 0, controls.camera);
     const bool screenshot = controls.actions.screenshot || choices_.screenshot;
 
-    const View view = lookAt(camera_.pose().eye, camera_.pose().target, glm::radians(60.0), size);
-    stats_ = drive_.draw(view, 0);
+    stats_ = drive_.draw(view(size), 0);
     report_.add(stats_);
     if (frameMs_.size() == graphLength) frameMs_.erase(frameMs_.begin());
     frameMs_.push_back(static_cast<float>(stats_.frameMs));
@@ -219,16 +260,22 @@ void WindowTour::frame() {
 }  // namespace
 
 int runWindowTour(const Options& options) {
-    Window window({.title = "mirrorstreet: preparing ...", .size = options.resolution});
+    Window window({.title = "mirrorstreet", .size = options.resolution});
     spdlog::info("drawing in a window on {}; F1 lists the keys", window.renderer());
+    Panel panel(window);
+    WindowProgress progress(window, panel);
+    progress.show({.what = "Building the city ...", .remark = {}});
     const Scene scene = loadScene(options);
-    WindowTour tour(options, window, scene);
-    window.setTitle("mirrorstreet");
+    progress.finish();
+    WindowTour tour(options, window, panel, progress, scene);
+    const bool ready = tour.start();
     const std::optional<std::uint32_t> frames = options.frameCount();
-    while (!window.closeRequested() && !interrupted() && (!frames || tour.report().frames() < *frames))
+    while (ready && !window.closeRequested() && !interrupted() &&
+           (!frames || tour.report().frames() < *frames))
         tour.frame();
-    tour.report().finish(interrupted(), std::cout);
-    return exitOk;
+    if (!ready) spdlog::warn("ended before the first picture: the reference maps that are finished are kept");
+    tour.report().finish(!ready || interrupted(), std::cout);
+    return interrupted() ? exitFailed : exitOk;
 }
 
 }  // namespace app

@@ -28,6 +28,11 @@ std::uint32_t OffscreenTarget::framebuffer() const {
     return impl_->framebuffer.name();
 }
 
+void OffscreenTarget::copyTo(std::uint32_t framebuffer, glm::ivec2 size) const {
+    glBlitNamedFramebuffer(impl_->framebuffer.name(), framebuffer, 0, 0, size_.x, size_.y, 0, 0, size.x,
+                           size.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+}
+
 void finishDrawing() {
     glFinish();
 }

@@ -20,6 +20,8 @@ class OffscreenTarget {
 
     std::uint32_t framebuffer() const;  ///< GL name
     glm::ivec2 size() const { return size_; }
+    /// Copies the pixels into another framebuffer, stretched to its size.
+    void copyTo(std::uint32_t framebuffer, glm::ivec2 size) const;
 
   private:
     glm::ivec2 size_;

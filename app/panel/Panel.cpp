@@ -16,6 +16,19 @@ namespace app {
 namespace {
 
 constexpr float panelWidth = 330;
+constexpr float waitingWidth = 480;
+
+void beginFrame() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void endFrame() {
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
 
 /// A combo box over the names of an enumeration.
 template <typename Enum, std::size_t count>
@@ -82,9 +95,9 @@ void drawMap(const PanelNews& news, PanelChoices& choices) {
         ImGui::End();
         return;
     }
-    ImGui::Text("Local map of the followed %s: 6 x %d x %d texels", news.followed.c_str(), news.mapFaceSize,
+    ImGui::Text("Local map of the %s: 6 x %d x %d texels", news.followed.c_str(), news.mapFaceSize,
                 news.mapFaceSize);
-    if (!news.mesh.empty()) ImGui::SameLine();
+    ImGui::SameLine();
     ImGui::Checkbox("mesh", &choices.showMesh);
     const float width = ImGui::GetContentRegionAvail().x;
     const ImVec2 size{width, width * static_cast<float>(mapViewFaces.y) / static_cast<float>(mapViewFaces.x)};
@@ -194,9 +207,7 @@ bool Panel::takesKeys() const {
 void Panel::draw(const PanelNews& news, PanelChoices& choices) {
     choices.nextVehicle = 0;
     choices.screenshot = false;
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
+    beginFrame();
     if (choices.showPanel) {
         ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
         ImGui::SetNextWindowSize({panelWidth, 0}, ImGuiCond_FirstUseEver);
@@ -210,9 +221,26 @@ void Panel::draw(const PanelNews& news, PanelChoices& choices) {
     }
     if (choices.showMap) drawMap(news, choices);
     if (choices.showHelp) drawHelp(choices);
-    ImGui::Render();
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    endFrame();
+}
+
+void Panel::drawWaiting(const Waiting& waiting) {
+    beginFrame();
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    // A height of its own: a window that is fitted to its text is hidden in its first frame.
+    const float lines = 2.5f + (waiting.total > 0 ? 1.0f : 0.0f);
+    ImGui::SetNextWindowSize({std::min(waitingWidth, screen.x), lines * ImGui::GetFrameHeightWithSpacing()});
+    ImGui::Begin("##waiting", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
+    ImGui::TextWrapped("%s", waiting.what.c_str());
+    if (waiting.total > 0) {
+        const std::string count = std::to_string(waiting.done) + " of " + std::to_string(waiting.total);
+        ImGui::ProgressBar(static_cast<float>(waiting.done) / static_cast<float>(waiting.total), {-1, 0},
+                           count.c_str());
+    }
+    if (!waiting.remark.empty()) ImGui::TextDisabled("%s", waiting.remark.c_str());
+    ImGui::End();
+    endFrame();
 }
 
 }  // namespace app

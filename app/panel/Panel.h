@@ -43,6 +43,14 @@ struct PanelNews {
     int mapFaceSize = 0;  ///< texels
 };
 
+/// Work that the user waits for.
+struct Waiting {
+    std::string what;
+    std::size_t done = 0;
+    std::size_t total = 0;  ///< 0: nobody knows how much it is
+    std::string remark;     ///< how to end it; may be empty
+};
+
 /// The Dear ImGui panel over a window. The window's OpenGL context must be current from construction to
 /// destruction.
 class Panel {
@@ -57,6 +65,8 @@ class Panel {
 
     /// Draws into the bound framebuffer 0 and changes the choices by what was clicked.
     void draw(const PanelNews& news, PanelChoices& choices);
+    /// Draws, instead of the panel, how far some work has come.
+    void drawWaiting(const Waiting& waiting);
 
   private:
     struct Impl;
