@@ -24,8 +24,15 @@ int run(const Options& options) {
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;
+    preparation.cacheIsPurpose = true;
     const PreparedReflections prepared =
         prepareReflections(scene.city, scene.lighting, renderer, preparation);
+
+    if (!prepared.complete) {
+        spdlog::warn(
+            "interrupted: the maps that are finished stay in the cache; run bake again for the rest");
+        return exitFailed;
+    }
 
     std::size_t bytes = 0;
     for (const auto& map : prepared.maps) bytes += map.bytes();
@@ -35,9 +42,7 @@ int run(const Options& options) {
               << " % of the surface visible from the lanes\n"
               << "memory          " << byteSize(static_cast<double>(bytes)) << "\n"
               << "cache           " << prepared.folder.string() << "\n";
-    if (prepared.complete) return exitOk;
-    spdlog::warn("interrupted: the maps that are finished stay in the cache; run bake again for the rest");
-    return exitFailed;
+    return exitOk;
 }
 
 }  // namespace

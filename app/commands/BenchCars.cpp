@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <iostream>
 
 #include "app/commands/Benches.h"
@@ -21,21 +23,29 @@ int benchCars(const Options& options) {
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;
-    const PreparedReflections prepared = prepareReflections(scene.city, scene.lighting, renderer, preparation);
-    if (!prepared.complete) return exitFailed;
+    const PreparedReflections prepared =
+        prepareReflections(scene.city, scene.lighting, renderer, preparation);
+    ResultFile results("cars", std::string(programVersion), context.renderer());
+    if (!prepared.complete) {
+        spdlog::warn(
+            "interrupted before anything was measured: the reference maps that are finished are kept");
+        if (options.json) results.write(*options.json, true);
+        return exitFailed;
+    }
 
     CarsBenchOptions settings;
     settings.seed = options.seed;
     settings.quality = options.quality;
     settings.resolution = options.resolution;
     settings.quiet = options.quiet;
-    if (options.cars.size() > 1 || options.cars.front() != Options{}.cars.front()) settings.cars = options.cars;
+    if (options.cars.size() > 1 || options.cars.front() != Options{}.cars.front())
+        settings.cars = options.cars;
     if (const auto frames = options.frameCount()) settings.frames = *frames;
     const std::vector<CarsRow> rows = runCarsBench(scene, prepared, renderer, settings);
 
-    ResultFile results("cars", std::string(programVersion), context.renderer());
-    std::vector<std::vector<std::string>> table{
-        {"method", "cars", "seen", "frame ms", "of none", "reflections ms", "rerender / it", "PSNR dB", "FLIP", "maps a frame", "maps' bytes"}};
+    std::vector<std::vector<std::string>> table{{"method", "cars", "seen", "frame ms", "of none",
+                                                 "reflections ms", "rerender / it", "PSNR dB", "FLIP",
+                                                 "maps a frame", "maps' bytes"}};
     for (const CarsRow& row : rows) {
         results.add({{"method", row.method},
                      {"city", options.city},
@@ -53,12 +63,15 @@ int benchCars(const Options& options) {
                      {"texture_bytes", row.textureBytes},
                      {"reference_map_coverage", prepared.coverage},
                      {"reference_maps", prepared.maps.size()}});
-        table.push_back({row.method, std::to_string(row.cars), std::to_string(row.visible), fixed(row.frame.median, 1),
-                         fixed(row.ratioToNone, 3), fixed(row.reflection.median, 2), fixed(row.rerenderRatio, 1), fixed(row.psnr, 1),
-                         fixed(row.flip, 4), fixed(row.mapsPerFrame, 1), byteSize(static_cast<double>(row.textureBytes))});
+        table.push_back({row.method, std::to_string(row.cars), std::to_string(row.visible),
+                         fixed(row.frame.median, 1), fixed(row.ratioToNone, 3),
+                         fixed(row.reflection.median, 2), fixed(row.rerenderRatio, 1), fixed(row.psnr, 1),
+                         fixed(row.flip, 4), fixed(row.mapsPerFrame, 1),
+                         byteSize(static_cast<double>(row.textureBytes))});
     }
     std::cout << formatTable(table);
     if (options.json) results.write(*options.json, interrupted());
+    if (interrupted()) spdlog::warn("interrupted: what was measured until then is kept");
     return interrupted() ? exitFailed : exitOk;
 }
 

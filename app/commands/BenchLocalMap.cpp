@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <iostream>
 
 #include "app/commands/Benches.h"
@@ -25,14 +27,19 @@ int benchLocalMap(const Options& options) {
     preparation.quiet = options.quiet;
     const PreparedReflections prepared =
         prepareReflections(scene.city, scene.lighting, renderer, preparation);
-    if (!prepared.complete) return exitFailed;
+    ResultFile results("localmap", std::string(programVersion), context.renderer());
+    if (!prepared.complete) {
+        spdlog::warn(
+            "interrupted before anything was measured: the reference maps that are finished are kept");
+        if (options.json) results.write(*options.json, true);
+        return exitFailed;
+    }
 
     LocalMapBenchOptions settings;
     settings.seed = options.seed;
     settings.lighting = scene.lighting;
     const std::vector<LocalMapRow> rows = runLocalMapBench(scene.city, prepared, renderer, settings);
 
-    ResultFile results("localmap", std::string(programVersion), context.renderer());
     std::vector<std::vector<std::string>> table{
         {"method", "ms", "of rerender", "PSNR dB", "worst", "to 4x4", "FLIP", "rays"}};
     for (const LocalMapRow& row : rows) {
@@ -45,13 +52,14 @@ int benchLocalMap(const Options& options) {
                      {"psnr_worst_db", row.psnrWorst},
                      {"psnr_supersampled_db", row.psnrSupersampled},
                      {"mean_flip", row.flip},
-                     {"rays", row.rays}});
+                     {"rays", row.rays > 0 ? nlohmann::ordered_json(row.rays) : nullptr}});
         table.push_back({row.method, fixed(row.time.median, 2), fixed(row.ratioToRerender, 4),
                          fixed(row.psnr, 1), fixed(row.psnrWorst, 1), fixed(row.psnrSupersampled, 1),
-                         fixed(row.flip, 3), std::to_string(row.rays)});
+                         fixed(row.flip, 3), row.rays > 0 ? std::to_string(row.rays) : "-"});
     }
     std::cout << formatTable(table);
     if (options.json) results.write(*options.json, interrupted());
+    if (interrupted()) spdlog::warn("interrupted: what was measured until then is kept");
     return interrupted() ? exitFailed : exitOk;
 }
 

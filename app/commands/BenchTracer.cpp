@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <iostream>
 
 #include "app/commands/Benches.h"
@@ -43,6 +45,7 @@ int benchTracer(const Options& options) {
     }
     std::cout << formatTable(table);
     if (options.json) results.write(*options.json, interrupted());
+    if (interrupted()) spdlog::warn("interrupted: what was measured until then is kept");
     return interrupted() ? exitFailed : exitOk;
 }
 

@@ -150,6 +150,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     };
     std::vector<Sums> sums(methods.size());
     std::vector<double> rerenderTimes, embreeTimes, embreeRatios;
+    double rerenderSquaredFine = 0;
     Progress progress("places", places.size());
     std::size_t done = 0;
     for (const Place& place : places) {
@@ -201,6 +202,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
                 }
             }
         }
+        rerenderSquaredFine += squaredError(truth, fineTruth);
         for (std::size_t m = 0; m < methods.size(); ++m) {
             const Picture picture = pictureOf(methods[m].map(), options.lighting);
             const double squared = squaredError(picture, truth);
@@ -233,7 +235,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     rerender.method = "rerender";
     rerender.time = timingOf(rerenderTimes);
     rerender.ratioToRerender = 1;
-    rerender.psnr = std::numeric_limits<double>::infinity();
+    rerender.psnrSupersampled = decibels(rerenderSquaredFine / count);
     rows.push_back(rerender);
     LocalMapRow embree;
     embree.method = "embree";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,11 +24,12 @@ struct LocalMapRow {
     std::string method;
     Timing time;                 ///< one map
     double ratioToRerender = 0;  ///< median of time / re-rendering's at the same place in the same round
-    double psnr = 0;  ///< dB, tone mapped, against re-rendering at the same size; over all places' texels
-    double psnrWorst = 0;         ///< of the worst place
-    double psnrSupersampled = 0;  ///< against re-rendering with 4x4 samples a texel
-    double flip = 0;              ///< mean FLIP over the faces
-    std::uint64_t rays = 0;       ///< a map, mean
+    // Not a number where nothing was measured: Embree finds distances, not colours.
+    double psnr = NAN;  ///< dB, tone mapped, against re-rendering at the same size; over all places' texels
+    double psnrWorst = NAN;         ///< of the worst place
+    double psnrSupersampled = NAN;  ///< against re-rendering with 4x4 samples a texel
+    double flip = NAN;              ///< mean FLIP over the faces
+    std::uint64_t rays = 0;         ///< a map, mean
 };
 
 /// One local map of a stopped car: every method against re-rendering its six faces, interleaved place by

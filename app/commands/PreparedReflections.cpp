@@ -10,6 +10,7 @@
 #include <iomanip>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 
 #include "app/report/Progress.h"
 #include "city/model/CityHeightfield.h"
@@ -102,7 +103,11 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
     const reflection::ReferenceMapStore store(prepared.folder, hash);
 
     std::optional<reflection::ReferenceMapStore::Plan> plan;
-    if (options.useCache) plan = store.loadPlan();
+    bool useCache = options.useCache;
+    std::error_code ignored;
+    if (useCache) plan = store.loadPlan();
+    if (useCache && !plan && std::filesystem::exists(store.planFile(), ignored))
+        spdlog::warn("{}: the list of reference maps is damaged; it was rebuilt", store.planFile().string());
     const auto goOn = [&](std::size_t done, std::size_t total) {
         return !interrupted() && (!options.carryOn || options.carryOn(done, total));
     };
@@ -114,7 +119,13 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
         plan.emplace();
         plan->positions.assign(placed.positions.begin(), placed.positions.end());
         plan->coverage = placed.coverage;
-        if (options.useCache) store.savePlan(*plan);
+        try {
+            if (useCache) store.savePlan(*plan);
+        } catch (const std::runtime_error& error) {
+            if (options.cacheIsPurpose) throw;
+            spdlog::warn("{} The maps are drawn for this run alone.", error.what());
+            useCache = false;
+        }
     }
     prepared.coverage = plan->coverage;
 
@@ -132,14 +143,14 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
     prepared.complete = goOn(0, plan->positions.size());
     if (!prepared.complete) return prepared;
     reflection::BakeResult baked =
-        reflection::bakeReferenceMaps(drawer, plan->positions, options.useCache ? &store : nullptr,
+        reflection::bakeReferenceMaps(drawer, plan->positions, useCache ? &store : nullptr,
                                       {options.faceSize, options.supersampling}, tell);
     for (const std::string& damage : baked.damaged) spdlog::warn("{}; it was rebuilt", damage);
     prepared.maps = std::move(baked.maps);
     prepared.loaded = baked.loaded;
     prepared.baked = baked.baked;
     prepared.complete = baked.complete;
-    if (!options.useCache) prepared.folder.clear();
+    if (!useCache) prepared.folder.clear();
     return prepared;
 }
 

@@ -26,6 +26,8 @@ struct PreparationOptions {
     int supersampling = 2;
     reflection::PlacementOptions placement;
     bool useCache = true;
+    /// A cache that cannot be written is an error; otherwise it is said, and the maps are drawn for this run.
+    bool cacheIsPurpose = false;
     std::filesystem::path cache;  ///< empty: the user's cache folder
     bool quiet = false;
     CarryOn carryOn;  ///< may be empty; an interrupt ends the work in any case

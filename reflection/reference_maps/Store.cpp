@@ -11,7 +11,9 @@
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -23,6 +25,8 @@ namespace reflection {
 
 namespace {
 
+constexpr const char* remedy =
+    "make room, mend the permissions, or name another folder in MIRRORSTREET_CACHE.";
 constexpr const char* hashAttribute = "mirrorstreetContent";
 constexpr const char* positionAttribute = "mirrorstreetPosition";
 constexpr const char* checksumAttribute = "mirrorstreetChecksum";
@@ -55,8 +59,8 @@ std::uint64_t checksumOf(const ReferenceMap& map) {
 /// Pixel in OpenEXR's picture for every texel of ours.
 std::vector<std::size_t> pictureIndex(int n) {
     const Imath::Box2i window(Imath::V2i(0, 0), Imath::V2i(n - 1, 6 * n - 1));
-    // OpenEXR counts 0 .. n-1 from edge to edge; ask it for the direction that it gives this texel's number, drawn in a
-    // little so that an edge texel does not slip onto the next face.
+    // OpenEXR counts 0 .. n-1 from edge to edge; ask it for the direction that it gives this texel's number,
+    // drawn in a little so that an edge texel does not slip onto the next face.
     const auto pixel = [&](const CubeFace& f, int x, int y) {
         const float inside = 1 - 1e-4f;
         const float s = (2.0f * static_cast<float>(x) / static_cast<float>(n - 1) - 1) * inside;
@@ -73,9 +77,11 @@ std::vector<std::size_t> pictureIndex(int n) {
     for (const CubeFace& f : cubeFaces) {
         // Faces are only turned and mirrored: a corner and two steps tell the rest.
         const long corner = pixel(f, 0, 0);
-        const long alongX = (pixel(f, n - 1, 0) - corner) / (n - 1), alongY = (pixel(f, 0, n - 1) - corner) / (n - 1);
+        const long alongX = (pixel(f, n - 1, 0) - corner) / (n - 1),
+                   alongY = (pixel(f, 0, n - 1) - corner) / (n - 1);
         for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x, ++i) index[i] = static_cast<std::size_t>(corner + x * alongX + y * alongY);
+            for (int x = 0; x < n; ++x, ++i)
+                index[i] = static_cast<std::size_t>(corner + x * alongX + y * alongY);
     }
     return index;
 }
@@ -106,7 +112,9 @@ std::filesystem::path ReferenceMapStore::file(std::size_t index) const {
     return folder_ / name.str();
 }
 
-std::filesystem::path ReferenceMapStore::packedFile(std::size_t index) const { return file(index).replace_extension(".packed"); }
+std::filesystem::path ReferenceMapStore::packedFile(std::size_t index) const {
+    return file(index).replace_extension(".packed");
+}
 
 void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
     const std::filesystem::path target = file(index);
@@ -115,7 +123,7 @@ void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
     std::filesystem::create_directories(folder_, error);
     if (error)
         throw std::runtime_error(folder_.string() + ": the cache folder cannot be made (" + error.message() +
-                                 "); choose another with --cache");
+                                 "); " + remedy);
 
     const std::vector<std::size_t> picture = pictureIndex(n);
     std::vector<Imath::half> red(map.texelCount()), green(map.texelCount()), blue(map.texelCount());
@@ -155,9 +163,13 @@ void ReferenceMapStore::save(std::size_t index, const ReferenceMap& map) const {
     } catch (const std::exception& e) {
         std::filesystem::remove(aside, error);
         throw std::runtime_error(target.string() + ": a reference map could not be written (" + e.what() +
-                                 "); check free space and permissions or choose another folder with --cache");
+                                 "); " + remedy);
     }
     renameInto(aside, target);
+}
+
+std::filesystem::path ReferenceMapStore::planFile() const {
+    return folder_ / "plan.txt";
 }
 
 ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
@@ -210,8 +222,7 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         }
         const auto* checksum = header.findTypedAttribute<Imf::StringAttribute>(checksumAttribute);
         if (!checksum) return {std::nullopt, "has no checksum"};
-        if (checksum->value() != hex(checksumOf(map)))
-            return {std::nullopt, "does not match its checksum"};
+        if (checksum->value() != hex(checksumOf(map))) return {std::nullopt, "does not match its checksum"};
         return {std::move(map), {}};
     } catch (const std::exception& e) {
         return {std::nullopt, e.what()};
@@ -221,7 +232,10 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
 void ReferenceMapStore::savePlan(const Plan& plan) const {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    const std::filesystem::path target = folder_ / "plan.txt";
+    if (error)
+        throw std::runtime_error(folder_.string() + ": the cache folder cannot be made (" + error.message() +
+                                 "); " + remedy);
+    const std::filesystem::path target = planFile();
     const std::filesystem::path aside = asideOf(target);
     {
         std::ofstream out(aside);
@@ -229,17 +243,19 @@ void ReferenceMapStore::savePlan(const Plan& plan) const {
             << std::setprecision(17) << plan.coverage << '\n';
         for (const glm::dvec3& p : plan.positions) out << p.x << ' ' << p.y << ' ' << p.z << '\n';
         out << "end\n";
-        if (!out.flush())
-            throw std::runtime_error(target.string() +
-                                     ": the list of reference maps could not be written; check free space "
-                                     "and permissions or choose "
-                                     "another folder with --cache");
+        out.close();
+        if (!out) {
+            const std::string cause = std::strerror(errno);
+            std::filesystem::remove(aside, error);
+            throw std::runtime_error(target.string() + ": the list of reference maps cannot be written (" +
+                                     cause + "); " + remedy);
+        }
     }
     renameInto(aside, target);
 }
 
 std::optional<ReferenceMapStore::Plan> ReferenceMapStore::loadPlan() const {
-    std::ifstream in(folder_ / "plan.txt");
+    std::ifstream in(planFile());
     std::string word, version, hash, last;
     std::size_t count = 0;
     Plan plan;

@@ -40,7 +40,9 @@ class ReferenceMapStore {
         double coverage = 0;
     };
     std::optional<Plan> loadPlan() const;
+    /// Throws std::runtime_error (file, cause, remedy) when it cannot be written.
     void savePlan(const Plan& plan) const;
+    std::filesystem::path planFile() const;
 
     std::filesystem::path file(std::size_t index) const;
     /// Where the packed copy of a map lies (see PackedFile).
