@@ -9,7 +9,9 @@ namespace {
 
 std::vector<Bench> allBenches() {
     return {
-        {{"cars", "frame time and error against the number of mirroring cars, every method on the same frames"}, benchCars},
+        {{"cars",
+          "frame time and error against the number of mirroring cars, every method on the same frames"},
+         benchCars},
         {{"localmap", "one local map by every method, against re-rendering its six faces"}, benchLocalMap},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out"}, benchStills},
         {{"tracer", "rays per second against heightfields, with an exact check; beside Embree"},

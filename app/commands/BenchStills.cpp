@@ -35,14 +35,17 @@ View viewOf(const vehicles::VehiclePose& pose, double distance, glm::ivec2 size)
     const double angle = pose.heading + glm::radians(38.0);
     const glm::dvec3 middle = pose.position + glm::dvec3(0, 0, 0.7);
     // Distances are to the body: half a car's length from its middle.
-    const glm::dvec3 eye = middle + (distance + 2.0) * glm::dvec3(std::cos(angle), std::sin(angle), 0) + glm::dvec3(0, 0, 0.9);
+    const glm::dvec3 eye =
+        middle + (distance + 2.0) * glm::dvec3(std::cos(angle), std::sin(angle), 0) + glm::dvec3(0, 0, 0.9);
     // Farther cars are seen through a longer lens, so that their paint can be judged in the picture.
     const double fov = distance < 5 ? 50 : distance < 20 ? 26 : 9;
     return lookAt(eye, middle, glm::radians(fov), size);
 }
 
-/// The vehicle that is seen best from that distance: nothing of the city between, and dark paint, which shows reflections.
-Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, double distance, glm::ivec2 size) {
+/// The vehicle that is seen best from that distance: nothing of the city between, and dark paint, which shows
+/// reflections.
+Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, double distance,
+                glm::ivec2 size) {
     Shot best;
     float bestScore = -std::numeric_limits<float>::infinity();
     for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
@@ -52,7 +55,8 @@ Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, do
         const glm::vec3 eye(view.eye);
         bool clear = true;
         for (const double side : {-1.5, 0.0, 1.5})
-            clear = clear && !prepared.tracer->occluded(eye, glm::vec3(pose.position + glm::dvec3(side, side, 1.0)), 0.5f);
+            clear = clear && !prepared.tracer->occluded(
+                                 eye, glm::vec3(pose.position + glm::dvec3(side, side, 1.0)), 0.5f);
         // Nobody else near the line of sight.
         float room = 10;
         for (const vehicles::VehiclePose& other : scene.vehicles) {
@@ -60,7 +64,8 @@ Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, do
             const glm::dvec3 towards = glm::normalize(pose.position - view.eye);
             const double along = glm::dot(other.position - view.eye, towards);
             if (along < -3 || along > distance + 2) continue;
-            room = std::min(room, static_cast<float>(glm::length(other.position - view.eye - along * towards)));
+            room =
+                std::min(room, static_cast<float>(glm::length(other.position - view.eye - along * towards)));
         }
         const float brightness = (pose.paint.r + pose.paint.g + pose.paint.b) / 3;
         const float score = (clear ? 100.0f : 0.0f) + std::min(room, 4.0f) * 5 - brightness * 6;
@@ -87,7 +92,8 @@ int benchStills(const Options& options) {
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;
-    const PreparedReflections prepared = prepareReflections(scene.city, scene.lighting, renderer, preparation);
+    const PreparedReflections prepared =
+        prepareReflections(scene.city, scene.lighting, renderer, preparation);
     if (!prepared.complete) return exitFailed;
 
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
@@ -95,11 +101,12 @@ int benchStills(const Options& options) {
     MirrorMask mirrors;
     ResultFile results("stills", std::string(programVersion), context.renderer());
     std::vector<std::vector<std::string>> table{{"picture", "PSNR dB", "FLIP"}};
-    const std::vector<std::pair<std::string, ReflectionMethod>> methods{{"rerender", ReflectionMethod::rerender},
-                                                                        {"none", ReflectionMethod::none},
-                                                                        {"static", ReflectionMethod::fixed},
-                                                                        {"box", ReflectionMethod::box},
-                                                                        {"mem", ReflectionMethod::mem}};
+    const std::vector<std::pair<std::string, ReflectionMethod>> methods{
+        {"rerender", ReflectionMethod::rerender},
+        {"none", ReflectionMethod::none},
+        {"static", ReflectionMethod::fixed},
+        {"box", ReflectionMethod::box},
+        {"mem", ReflectionMethod::mem}};
     for (const int distance : {3, 10, 40}) {
         FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {});
         if (frame.vehicles.empty()) {
@@ -126,13 +133,18 @@ int benchStills(const Options& options) {
             renderer.drawView(shot.view, {engine.textures(), plan.slots}, target.framebuffer());
             const Image8 image = readPixels(target.framebuffer(), target.size());
             const std::string file = options.city + "_" + std::to_string(distance) + "m_" + name + ".png";
-            writePng({image.size.x, image.size.y, image.rgba}, options.out / std::filesystem::path(file).filename());
+            writePng({image.size.x, image.size.y, image.rgba},
+                     options.out / std::filesystem::path(file).filename());
             const std::vector<glm::vec3> pixels = toFloat(image);
             if (method == ReflectionMethod::rerender) truth = pixels;
             const int w = image.size.x, h = image.size.y;
             const double psnr = reflection::psnr({w, h, pixels}, {w, h, truth}, mask);
             const double flip = reflection::meanError(reflection::flip({w, h, pixels}, {w, h, truth}), mask);
-            results.add({{"method", name}, {"city", options.city}, {"distance_m", distance}, {"psnr_db", psnr}, {"mean_flip", flip}});
+            results.add({{"method", name},
+                         {"city", options.city},
+                         {"distance_m", distance},
+                         {"psnr_db", psnr},
+                         {"mean_flip", flip}});
             table.push_back({file, fixed(psnr, 1), fixed(flip, 4)});
         }
     }

@@ -45,13 +45,15 @@ struct Stage {
     std::size_t visible = 0;
 };
 
-Stage setStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars, const CarsBenchOptions& options) {
+Stage setStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars,
+               const CarsBenchOptions& options) {
     Stage best;
     std::vector<Lookout> places = lookouts(scene.city);
     constexpr std::size_t placesTried = 6;
     const std::size_t stride = std::max<std::size_t>(1, places.size() / placesTried);
     for (std::size_t p = 0; p < places.size() && best.visible < cars; p += stride) {
-        const View view = lookAt(places[p].eye, places[p].target, glm::radians(fieldOfView), options.resolution);
+        const View view =
+            lookAt(places[p].eye, places[p].target, glm::radians(fieldOfView), options.resolution);
         for (const std::uint32_t wanted : {2 * cars, 4 * cars, 8 * cars}) {
             vehicles::TrafficOptions traffic;
             traffic.seed = options.seed;
@@ -80,8 +82,8 @@ std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, const View& view)
     return seen;
 }
 
-/// A frame in which only so many vehicles are left, those largest on screen that were kept in the frame before first: nobody is
-/// swapped while he is still seen.
+/// A frame in which only so many vehicles are left, those largest on screen that were kept in the frame
+/// before first: nobody is swapped while he is still seen.
 class Cast {
   public:
     explicit Cast(std::uint32_t count) : count_(count) {}
@@ -90,7 +92,8 @@ class Cast {
         renderer.prepare(scene);
         std::vector<SeenVehicle> seen = seenIn(renderer, scene.views.front());
         std::stable_sort(seen.begin(), seen.end(), [&](const SeenVehicle& a, const SeenVehicle& b) {
-            const bool keptA = kept_.contains(scene.vehicles[a.index].id), keptB = kept_.contains(scene.vehicles[b.index].id);
+            const bool keptA = kept_.contains(scene.vehicles[a.index].id),
+                       keptB = kept_.contains(scene.vehicles[b.index].id);
             return keptA != keptB ? keptA : a.diameterPixels > b.diameterPixels;
         });
         seen.resize(std::min<std::size_t>(seen.size(), count_));
@@ -118,8 +121,8 @@ struct MethodRun {
 
 }  // namespace
 
-std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                                  const CarsBenchOptions& options) {
+std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared,
+                                  SceneRenderer& renderer, const CarsBenchOptions& options) {
     std::vector<CarsRow> rows;
     const OffscreenTarget target(options.resolution);
     MirrorMask mirrors;
@@ -138,8 +141,10 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             settings.method = method;
             settings.variant = variant;
             settings.quality = options.quality;
-            methods.push_back({std::move(name),
-                               std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings), {}});
+            methods.push_back(
+                {std::move(name),
+                 std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings),
+                 {}});
         };
         add("none", ReflectionMethod::none, MemVariant::ours);
         add("static", ReflectionMethod::fixed, MemVariant::ours);
@@ -152,7 +157,8 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         Cast cast(cars);
         std::uint32_t visible = 0;
         for (std::uint32_t frame = 0; frame < options.warmUp + options.frames && !interrupted(); ++frame) {
-            for (double ahead = 0; ahead < options.frameStep; ahead += vehicles::TrafficOptions{}.step) stage.traffic->step();
+            for (double ahead = 0; ahead < options.frameStep; ahead += vehicles::TrafficOptions{}.step)
+                stage.traffic->step();
             FrameScene picture = assembleFrame(scene.city, *stage.traffic, scene.lighting, {stage.view});
             cast.select(picture, renderer);
             const bool measured = frame >= options.warmUp;
@@ -160,7 +166,9 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             std::vector<Image8> images;
             for (MethodRun& method : methods) {
                 // Re-rendering holds nothing from frame to frame: its warm-up would only cost time.
-                if (!measured && method.engine->settings().method == ReflectionMethod::rerender && frame + 1 < options.warmUp) continue;
+                if (!measured && method.engine->settings().method == ReflectionMethod::rerender &&
+                    frame + 1 < options.warmUp)
+                    continue;
                 finishDrawing();
                 const Stopwatch watch;
                 renderer.prepare(picture);
@@ -184,9 +192,10 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
                 const int width = options.resolution.x, height = options.resolution.y;
                 for (std::size_t m = 0; m < methods.size(); ++m) {
                     const std::vector<glm::vec3> test = toFloat(images[m]);
-                    methods[m].psnrSum += reflection::psnr({width, height, test}, {width, height, truth}, mask);
-                    methods[m].flipSum +=
-                        reflection::meanError(reflection::flip({width, height, test}, {width, height, truth}), mask);
+                    methods[m].psnrSum +=
+                        reflection::psnr({width, height, test}, {width, height, truth}, mask);
+                    methods[m].flipSum += reflection::meanError(
+                        reflection::flip({width, height, test}, {width, height, truth}), mask);
                     ++methods[m].compared;
                 }
             }

@@ -26,7 +26,8 @@ MirrorMask::MirrorMask() {
     }
 }
 
-std::vector<unsigned char> MirrorMask::of(SceneRenderer& renderer, const FrameScene& scene, const OffscreenTarget& target) {
+std::vector<unsigned char> MirrorMask::of(SceneRenderer& renderer, const FrameScene& scene,
+                                          const OffscreenTarget& target) {
     Image8 images[2];
     for (std::int16_t shade = 0; shade < 2; ++shade) {
         VehicleReflections reflections;

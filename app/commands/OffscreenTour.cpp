@@ -16,6 +16,7 @@
 #include "app/frame/CameraRig.h"
 #include "app/frame/ShotPlan.h"
 #include "app/render/Readback.h"
+#include "app/report/AsideFile.h"
 #include "app/report/Picture.h"
 #include "app/report/Progress.h"
 #include "app/report/Timing.h"
@@ -67,6 +68,7 @@ std::unique_ptr<VideoWriter> openVideo(const Options& options) {
 }  // namespace
 
 int runOffscreenTour(const Options& options) {
+    requireWritable(options.out / "tour.mp4");
     const OffscreenContext context;
     spdlog::info("drawing without a window on {}", context.renderer());
     const Scene scene = loadScene(options);

@@ -28,7 +28,7 @@ CLI::Validator between(double low, double high, const std::string& unit) {
             if (value < low || value > high) return text + " is outside " + range;
             return {};
         },
-        range);
+        "");
 }
 
 CLI::Validator wholeBetween(std::uint64_t low, std::uint64_t high) {
@@ -91,7 +91,10 @@ void parseResolution(const std::string& text, glm::ivec2& target) {
 
 void addTraffic(CLI::App& parser, Options& o, bool many) {
     auto* cars =
-        parser.add_option("--cars", o.cars, many ? "numbers of cars, separated by commas" : "number of cars")
+        parser
+            .add_option("--cars", o.cars,
+                        many ? "numbers of cars, separated by commas (each measurement has its own default)"
+                             : "number of cars (default 60)")
             ->delimiter(',')
             ->type_name("N")
             ->check(wholeBetween(0, 100000));
@@ -112,13 +115,14 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
             ->check(wholeBetween(0, 0xffffffffffffffffull));
         parser
             .add_option("--size", o.size,
-                        "side of a generated city, or of the square that is cut from a file")
+                        "side of boulevard (200 to 2000, default 600), or of the square that is cut from a "
+                        "file (default: all of it)")
             ->type_name("METRES")
             ->check(between(100, 20000, "metres"));
     }
     if (groups & trafficOptions) {
         addTraffic(parser, o, !command.benches.empty());
-        const std::string length = "length to which the body is scaled";
+        const std::string length = "length to which the body is scaled, 0.5 to 60";
         if (!(groups & exportOptions))
             parser.add_option("--car", o.car, "body for all cars: a binary glTF file")
                 ->type_name("FILE.glb")
@@ -138,7 +142,7 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
         addNamed(parser, "--mem", o.mem, memVariantNames, "form of the method mem (default ours)");
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
-        parser.add_option("--cell", o.cell, "side of a heightfield cell")
+        parser.add_option("--cell", o.cell, "side of a heightfield cell, 0.1 to 50")
             ->type_name("METRES")
             ->capture_default_str()
             ->check(between(0.1, 50, "metres"));
@@ -168,7 +172,9 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
             ->check(wholeBetween(1, 240));
     }
     if (groups & outOptions)
-        parser.add_option("--out", o.out, "folder for pictures and video")
+        parser
+            .add_option("--out", o.out,
+                        "folder for pictures and video (screenshots, where there is a window)")
             ->type_name("DIR")
             ->capture_default_str();
     if (groups & jsonOptions)

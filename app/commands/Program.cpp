@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "app/commands/Version.h"
+#include "app/report/AsideFile.h"
 
 namespace app {
 
@@ -46,6 +47,9 @@ int runProgram(const std::vector<Command>& commands, std::span<const std::string
         if (const int* code = std::get_if<int>(&outcome)) return *code;
         const Options& options = std::get<Options>(outcome);
         if (options.quiet) spdlog::set_level(spdlog::level::warn);
+        // Said now rather than after minutes of work.
+        for (const auto& file : {options.json, options.exportCity, options.exportCar, options.exportDrive})
+            if (file) requireWritable(*file);
         return command.run(options);
     }
     std::cerr << "mirrorstreet: there is no command '" << name << "'";

@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <stdexcept>
+#include <system_error>
 
 #include "app/report/AsideFile.h"
 
@@ -227,7 +231,14 @@ void GltfBuilder::write(const std::filesystem::path& file) const {
                                  "'; choose another city or vehicle.");
     AsideFile aside(file);
     tinygltf::TinyGLTF writer;
-    if (!writer.WriteGltfSceneToFile(&impl_->model, aside.aside().string(), true, true, false, true))
+    const bool written =
+        writer.WriteGltfSceneToFile(&impl_->model, aside.aside().string(), true, true, false, true);
+    // The writer does not notice a full disk; a binary glTF file tells its own length.
+    std::array<std::uint32_t, 3> header{};
+    std::ifstream(aside.aside(), std::ios::binary)
+        .read(reinterpret_cast<char*>(header.data()), sizeof header);
+    std::error_code error;
+    if (!written || header[2] == 0 || std::filesystem::file_size(aside.aside(), error) != header[2] || error)
         throw std::runtime_error("cannot write '" + file.string() + "'; make room or choose another place.");
     aside.commit();
 }

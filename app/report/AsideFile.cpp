@@ -44,6 +44,16 @@ void AsideFile::commit() {
     committed_ = true;
 }
 
+void requireWritable(const std::filesystem::path& file) {
+    const AsideFile aside(file);
+    std::error_code ignored;
+    const bool folderInTheWay = std::filesystem::is_directory(file, ignored);
+    if (!folderInTheWay && std::ofstream(aside.aside(), std::ios::binary | std::ios::trunc)) return;
+    throw std::runtime_error("cannot write '" + file.string() + "' (" +
+                             std::strerror(folderInTheWay ? EISDIR : errno) +
+                             "); mend the permissions or choose another place.");
+}
+
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     AsideFile aside(file);
     std::ofstream out(aside.aside(), std::ios::binary | std::ios::trunc);

@@ -26,7 +26,11 @@ class AsideFile {
     bool committed_ = false;
 };
 
-/// Writes a whole text file that way. Throws std::runtime_error naming the file and the cause.
+/// Throws, before any work is done for it, what writing this file would throw: std::runtime_error naming the
+/// file and the cause. Leaves the folder made, and no file.
+void requireWritable(const std::filesystem::path& file);
+
+/// Writes a whole file, text or any other bytes, that way. Throws std::runtime_error naming the file and the cause.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace app

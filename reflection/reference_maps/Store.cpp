@@ -90,10 +90,10 @@ void renameInto(const std::filesystem::path& aside, const std::filesystem::path&
     std::error_code error;
     std::filesystem::rename(aside, file, error);
     if (error) {
+        const std::string cause = error.message();
         std::filesystem::remove(aside, error);
-        throw std::runtime_error(
-            file.string() +
-            ": the finished file could not be put in place; check that the folder is writable");
+        throw std::runtime_error(file.string() + ": the finished file could not be put in place (" + cause +
+                                 "); " + remedy);
     }
 }
 

@@ -67,6 +67,19 @@ TEST(AsideFileTest, makesItsFolderAndNamesWhatItCannotMake) {
     }
 }
 
+TEST(AsideFileTest, whatCannotBeWrittenIsToldBeforeTheWork) {
+    const fs::path folder = emptyFolder();
+    requireWritable(folder / "deep" / "a.json");
+    EXPECT_EQ(entries(folder / "deep"), 0u);
+    writeTextFile(folder / "a.json", "old");
+    requireWritable(folder / "a.json");
+    EXPECT_EQ(contents(folder / "a.json"), "old");
+    EXPECT_EQ(entries(folder), 2u);
+    EXPECT_THROW(requireWritable(folder / "deep"), std::runtime_error) << "a folder has that name";
+    EXPECT_THROW(requireWritable(folder / "a.json" / "b.json"), std::runtime_error);
+    EXPECT_THROW(requireWritable(""), std::runtime_error);
+}
+
 TEST(TimingTest, minMedianMaxOfOddAndEvenCounts) {
     const Timing odd = timingOf({5, 1, 9});
     EXPECT_EQ(odd.min, 1);
