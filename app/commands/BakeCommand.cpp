@@ -51,7 +51,7 @@ Command bakeCommand() {
     return {.name = "bake",
             .summary =
                 "places and draws the city's reference maps into the cache; goes on where it was interrupted",
-            .groups = cityOptions | reflectionOptions | pictureOptions,
+            .groups = cityOptions | mapOptions,
             .benches = {},
             .run = run};
 }

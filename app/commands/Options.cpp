@@ -142,16 +142,20 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
         addNamed(parser, "--mem", o.mem, memVariantNames, "form of the method mem (default ours)");
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
+    }
+    if (groups & (reflectionOptions | mapOptions)) {
         parser.add_option("--cell", o.cell, "side of a heightfield cell, 0.1 to 50")
             ->type_name("METRES")
             ->capture_default_str()
             ->check(between(0.1, 50, "metres"));
     }
-    if (groups & pictureOptions) {
+    if (groups & (pictureOptions | mapOptions)) {
         parser.add_option("--time", o.hour, "hour of the day, 0 to 24")
             ->type_name("HOUR")
             ->capture_default_str()
             ->check(between(0, 24, "hours"));
+    }
+    if (groups & pictureOptions) {
         parser
             .add_option_function<std::string>(
                 "--resolution", [&o](const std::string& text) { parseResolution(text, o.resolution); },

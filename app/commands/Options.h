@@ -59,6 +59,7 @@ enum OptionGroup : unsigned {
     displayOptions = 1u << 7,     ///< --offscreen --camera --stills
     exportOptions = 1u << 8,      ///< --city --car --drive as files to write
     cityIsOptional = 1u << 9,     ///< no CITY means none, not the default
+    mapOptions = 1u << 10,        ///< what reference maps depend on: --cell --time
 };
 
 /// A name that may follow `bench`.
