@@ -14,6 +14,7 @@
 
 #include "app/commands/Commands.h"
 #include "app/commands/LoadScene.h"
+#include "app/commands/PreparedReflections.h"
 #include "app/commands/Version.h"
 #include "app/display/OffscreenContext.h"
 #include "app/display/OffscreenTarget.h"
@@ -49,7 +50,8 @@ void printMachine() {
     print("mirrorstreet " + std::string(programVersion),
           {{"processor", processorName()},
            {"threads", std::to_string(std::thread::hardware_concurrency())},
-           {"instruction sets", instructionSets()}});
+           {"instruction sets", instructionSets()},
+           {"cache folder", cacheFolder().string()}});
     print("libraries (at compile time)",
           {{"OpenImageIO", OIIO_VERSION_STRING},
            {"GLM", version(GLM_VERSION_MAJOR, GLM_VERSION_MINOR, GLM_VERSION_PATCH)},

@@ -153,7 +153,7 @@ void WindowTour::obey(const ControlResult& controls) {
         window_.captureCursor(looking_);
     }
     if (choices_.settings != drive_.settings()) {
-        drive_.change(choices_.settings, showWaiting("Esc goes back to the light before."));
+        drive_.change(choices_.settings, showWaiting("Esc: stay with what was there before."));
         choices_.settings = drive_.settings();
         endWaiting();
     }
