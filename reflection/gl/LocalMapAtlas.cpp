@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "reflection/gl/Texture.h"
 
@@ -20,9 +21,35 @@ struct LocalMapAtlas::Impl {
         int layers = 0;
     };
     std::array<SizeClass, localMapFaceSizes.size()> classes;
+    /// A software rasteriser makes mipmaps by six small draws a level, with a flush of its pipeline each: some 10 ms a map, more than
+    /// drawing it. Filtering on the processor takes a tenth.
+    bool software = false;
+    LocalMap map;
+    PackedMips mips;
+
+    void filterOnProcessor(LocalMapSlot slot, int faceSize);
 };
 
-LocalMapAtlas::LocalMapAtlas() : impl_(std::make_unique<Impl>()) {}
+void LocalMapAtlas::Impl::filterOnProcessor(LocalMapSlot slot, int faceSize) {
+    const GLuint array = classes[static_cast<std::size_t>(slot.sizeClass)].array.name();
+    map.resize(faceSize);
+    mips.texels.resize(map.red.size());
+    glGetTextureSubImage(array, 0, 0, 0, 6 * slot.layer, faceSize, faceSize, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
+                         static_cast<GLsizei>(mips.texels.size() * sizeof(std::uint32_t)), mips.texels.data());
+    for (std::size_t i = 0; i < map.red.size(); ++i) unpackTexel(mips.texels[i], map.red[i], map.green[i], map.blue[i]);
+    packMips(map, mips);
+    for (int level = 1; level < mips.levelCount(); ++level) {
+        const int side = faceSize >> level;
+        glTextureSubImage3D(array, level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
+                            mips.texels.data() + mips.levelOffset(level));
+    }
+}
+
+LocalMapAtlas::LocalMapAtlas() : impl_(std::make_unique<Impl>()) {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view name = renderer ? renderer : "";
+    impl_->software = name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos;
+}
 LocalMapAtlas::~LocalMapAtlas() = default;
 LocalMapAtlas::LocalMapAtlas(LocalMapAtlas&&) noexcept = default;
 LocalMapAtlas& LocalMapAtlas::operator=(LocalMapAtlas&&) noexcept = default;
@@ -65,6 +92,10 @@ CubeTarget LocalMapAtlas::target(LocalMapSlot slot) const {
 
 void LocalMapAtlas::finishDrawn(LocalMapSlot slot) {
     const int faceSize = localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)];
+    if (impl_->software) {
+        impl_->filterOnProcessor(slot, faceSize);
+        return;
+    }
     const gl::Texture one = gl::Texture::view(GL_TEXTURE_CUBE_MAP, impl_->classes[static_cast<std::size_t>(slot.sizeClass)].array.name(),
                                               format, 0, gl::mipLevels(faceSize), 6 * slot.layer, 6);
     glGenerateTextureMipmap(one.name());
