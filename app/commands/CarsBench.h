@@ -14,9 +14,9 @@ namespace app {
 
 struct CarsBenchOptions {
     std::vector<std::uint32_t> cars{10, 30, 100};  ///< on screen
-    std::uint32_t frames = 8;     ///< measured frames at each number of cars
-    std::uint32_t warmUp = 4;     ///< frames before them
-    double frameStep = 1.0 / 30;  ///< seconds of traffic from frame to frame
+    std::uint32_t frames = 8;                      ///< measured frames at each number of cars
+    std::uint32_t warmUp = 4;                      ///< frames before them
+    double frameStep = 1.0 / 30;                   ///< seconds of traffic from frame to frame
     glm::ivec2 resolution{1280, 720};
     std::uint64_t seed = 1;
     Quality quality = Quality::medium;
@@ -25,21 +25,23 @@ struct CarsBenchOptions {
 
 struct CarsRow {
     std::string method;
-    std::uint32_t cars = 0;        ///< asked for
-    std::uint32_t visible = 0;     ///< on screen, each with a map of its own (but `none` and `static`)
-    Timing frame;                  ///< whole frame, until OpenGL had finished
-    Timing reflection;             ///< frame minus the same frame of `none`
-    double ratioToNone = 0;        ///< median over frames
-    double rerenderRatio = 0;      ///< reflection time of re-rendering over this one's, median over frames
-    double psnr = 0, flip = 0;     ///< over the cars' mirroring pixels, against re-rendering every car every frame
+    std::uint32_t cars = 0;     ///< asked for
+    std::uint32_t visible = 0;  ///< on screen, each with a map of its own (but `none` and `static`)
+    Timing frame;               ///< whole frame, until OpenGL had finished
+    Timing reflection;          ///< frame minus the same frame of `none`
+    double ratioToNone = 0;     ///< median over frames
+    double rerenderRatio = 0;   ///< reflection time of re-rendering over this one's, median over frames
+    double psnr = 0,
+           flip = 0;  ///< over the cars' mirroring pixels, against re-rendering every car every frame
     double mapsPerFrame = 0;
     std::size_t textureBytes = 0;  ///< local maps on the GPU
 };
 
-/// All reflection methods on the same frames, interleaved frame by frame: `none static blend box mem-paper mem rerender`.
-/// The camera looks down a street; traffic is put before it until that many cars are on screen, and cars off screen or beyond the
-/// number are taken away. `none` is the same frame with plain paint, drawn as fast as the renderer can.
-std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                                  const CarsBenchOptions& options);
+/// All reflection methods on the same frames, interleaved frame by frame: `none static blend box mem-paper
+/// mem rerender`. The camera looks down a street; traffic is put before it until that many cars are on
+/// screen, and cars off screen or beyond the number are taken away. `none` is the same frame with plain
+/// paint, drawn as fast as the renderer can.
+std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared,
+                                  SceneRenderer& renderer, const CarsBenchOptions& options);
 
 }  // namespace app

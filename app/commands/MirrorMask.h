@@ -11,14 +11,15 @@
 
 namespace app {
 
-/// Finds the pixels of a view in which a vehicle mirrors something: those that differ between a black and a white surrounding.
-/// Needs a current OpenGL context.
+/// Finds the pixels of a view in which a vehicle mirrors something: those that differ between a black and a
+/// white surrounding. Needs a current OpenGL context.
 class MirrorMask {
   public:
     MirrorMask();
 
     /// One byte a pixel of the scene's first view, 1: mirrors. `renderer` must be prepared with the scene.
-    std::vector<unsigned char> of(SceneRenderer& renderer, const FrameScene& scene, const OffscreenTarget& target);
+    std::vector<unsigned char> of(SceneRenderer& renderer, const FrameScene& scene,
+                                  const OffscreenTarget& target);
 
   private:
     reflection::LocalMapAtlas atlas_;

@@ -11,8 +11,8 @@ namespace app {
 
 /// What is to be seen in one frame: plain data, from traffic and camera towards the plan, never back.
 struct FrameScene {
-    double time = 0;                                    ///< seconds
-    std::vector<View> views;                            ///< all displays and eyes of this frame
+    double time = 0;          ///< seconds
+    std::vector<View> views;  ///< all displays and eyes of this frame
     std::vector<vehicles::VehiclePose> vehicles;
     std::vector<vehicles::SignalColour> signalColours;  ///< one per CityModel::signalHeads
     Lighting lighting;

@@ -25,7 +25,8 @@ reflection::LocalMapMethod localMethod(const ReflectionSettings& settings) {
         case ReflectionMethod::box:
             return reflection::LocalMapMethod::box;
         case ReflectionMethod::mem:
-            return settings.variant == MemVariant::paper ? reflection::LocalMapMethod::memPaper : reflection::LocalMapMethod::mem;
+            return settings.variant == MemVariant::paper ? reflection::LocalMapMethod::memPaper
+                                                         : reflection::LocalMapMethod::mem;
         default:
             return reflection::LocalMapMethod::blend;
     }
@@ -49,7 +50,8 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
             options.errorThreshold = 0.25f;
             break;
     }
-    // The paper rebuilds every visible vehicle's map every frame; re-rendering is the yardstick and does so too.
+    // The paper rebuilds every visible vehicle's map every frame; re-rendering is the yardstick and does so
+    // too.
     options.everyFrame = settings.everyFrame || settings.method == ReflectionMethod::rerender ||
                          (settings.method == ReflectionMethod::mem && settings.variant == MemVariant::paper);
     return options;
@@ -57,7 +59,8 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
 
 std::size_t candidateCount(const ReflectionSettings& settings) {
     if (settings.method != ReflectionMethod::mem || settings.variant == MemVariant::paper) return 2;
-    // Measured over ten places: a third map adds 0.2 dB (paper) to 0.7 dB (boulevard) to two, six add 0.4 dB to three for a fifth more time.
+    // Measured over ten places: a third map adds 0.2 dB (paper) to 0.7 dB (boulevard) to two, six add 0.4 dB
+    // to three for a fifth more time.
     return settings.quality == Quality::low ? 2 : settings.quality == Quality::medium ? 3 : 6;
 }
 
@@ -66,8 +69,8 @@ reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int f
     request.method = localMethod(settings);
     request.faceSize = faceSize;
     if (request.method == reflection::LocalMapMethod::memPaper) {
-        // Section 4.4: 10 x 10, divided down to the size of a texel at most; R is not given in the paper: 0.5 divides at a
-        // change of scale of one half.
+        // Section 4.4: 10 x 10, divided down to the size of a texel at most; R is not given in the paper: 0.5
+        // divides at a change of scale of one half.
         request.mesh = {10, 0, reflection::RefineCriterion::depthRatio, 0.5f};
         while ((10 << (request.mesh.depth + 1)) <= faceSize) ++request.mesh.depth;
     } else {
@@ -105,13 +108,17 @@ struct ReflectionEngine::Impl {
         fixedMapBuilt = false;
     }
     void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
-    void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize, std::vector<reflection::MovingObject>& out);
+    void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
+                          std::vector<reflection::MovingObject>& out);
     void buildFixedMap();
 };
 
-ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer, std::span<const reflection::PackedReferenceMap> maps,
-                                   std::span<const vehicles::VehicleModel> models, const ReflectionSettings& settings)
-    : impl_(std::make_unique<Impl>(Impl{tracer, maps, models, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}, {}})) {
+ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer,
+                                   std::span<const reflection::PackedReferenceMap> maps,
+                                   std::span<const vehicles::VehicleModel> models,
+                                   const ReflectionSettings& settings)
+    : impl_(std::make_unique<Impl>(
+          Impl{tracer, maps, models, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}, {}})) {
     // The middle of the painted body: a little above half of the height.
     for (const vehicles::VehicleModel& model : models) impl_->centreHeights.push_back(0.55f * model.height);
     for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
@@ -120,11 +127,14 @@ ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer, std::sp
 ReflectionEngine::~ReflectionEngine() = default;
 
 void ReflectionEngine::configure(const ReflectionSettings& settings) {
-    if (settings.method != impl_->settings.method || settings.variant != impl_->settings.variant) impl_->forget();
+    if (settings.method != impl_->settings.method || settings.variant != impl_->settings.variant)
+        impl_->forget();
     impl_->settings = settings;
 }
 
-const ReflectionSettings& ReflectionEngine::settings() const { return impl_->settings; }
+const ReflectionSettings& ReflectionEngine::settings() const {
+    return impl_->settings;
+}
 
 void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMap> maps) {
     impl_->maps = maps;
@@ -133,8 +143,12 @@ void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMa
     impl_->forget();
 }
 
-reflection::LocalMapTextures ReflectionEngine::textures() const { return impl_->atlas.textures(); }
-const ReflectionCounters& ReflectionEngine::counters() const { return impl_->counters; }
+reflection::LocalMapTextures ReflectionEngine::textures() const {
+    return impl_->atlas.textures();
+}
+const ReflectionCounters& ReflectionEngine::counters() const {
+    return impl_->counters;
+}
 
 void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const MapJob> jobs) {
     built.resize(std::max(built.size(), jobs.size()));
@@ -146,9 +160,10 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
         const int faceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(jobs[i].slot.sizeClass)];
         reflection::LocalMapRequest request = requestFor(settings, faceSize);
         request.centre = jobs[i].centre;
-        candidates[i] = request.method == reflection::LocalMapMethod::mem
-                            ? reflection::selectCandidates(maps, request.centre, tracer, candidateCount(settings))
-                            : reflection::selectNearestTwo(maps, request.centre);
+        candidates[i] =
+            request.method == reflection::LocalMapMethod::mem
+                ? reflection::selectCandidates(maps, request.centre, tracer, candidateCount(settings))
+                : reflection::selectNearestTwo(maps, request.centre);
         request.candidates = candidates[i];
         const double heading = scene.vehicles[jobs[i].vehicle].heading;
         request.streetDirection = {std::cos(heading), std::sin(heading), 0};
@@ -163,7 +178,8 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
         rays += scratch.local().builder.buildFace(tracer, requests[k / 6], face, built[k / 6]);
         reflection::drawMovingObjects(neighbours[k / 6], face, built[k / 6]);
     });
-    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { reflection::packMips(built[i], packed[i]); });
+    tbb::parallel_for(std::size_t{0}, jobs.size(),
+                      [&](std::size_t i) { reflection::packMips(built[i], packed[i]); });
     counters.rays = rays;
     for (std::size_t i = 0; i < jobs.size(); ++i) atlas.upload(jobs[i].slot, packed[i]);
 }
@@ -193,7 +209,8 @@ void ReflectionEngine::Impl::gatherNeighbours(const FrameScene& scene, const Map
     for (const Near& other : near) {
         const vehicles::VehiclePose& pose = scene.vehicles[other.index];
         const float height = models[pose.model].height;
-        if (tracer.occluded(glm::vec3(job.centre), glm::vec3(pose.position + glm::dvec3(0, 0, height)), models[pose.model].length))
+        if (tracer.occluded(glm::vec3(job.centre), glm::vec3(pose.position + glm::dvec3(0, 0, height)),
+                            models[pose.model].length))
             continue;
         shadeForLocalMap(models[pose.model], pose, scene.lighting, job.centre, out.emplace_back());
     }
@@ -254,12 +271,13 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     engine.counters.postponed = engine.plan.postponed;
     engine.counters.texels = engine.plan.texels;
     engine.counters.localMapBytes = engine.atlas.bytes();
-    engine.counters.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    engine.counters.milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return engine.plan;
 }
 
-std::vector<reflection::LocalMapMesh::Quad> ReflectionEngine::meshOf(const glm::dvec3& centre, int face, int faceSize,
-                                                                     int& latticeSize) const {
+std::vector<reflection::LocalMapMesh::Quad> ReflectionEngine::meshOf(const glm::dvec3& centre, int face,
+                                                                     int faceSize, int& latticeSize) const {
     reflection::LocalMapMesh mesh;
     mesh.build(impl_->tracer, glm::vec3(centre), face, requestFor(impl_->settings, faceSize).mesh);
     latticeSize = mesh.latticeSize();

@@ -22,7 +22,7 @@ struct ReflectionSettings {
     ReflectionMethod method = ReflectionMethod::mem;
     MemVariant variant = MemVariant::ours;
     Quality quality = Quality::medium;
-    bool everyFrame = false;   ///< rebuild every visible map every frame
+    bool everyFrame = false;     ///< rebuild every visible map every frame
     bool vehiclesInMaps = true;  ///< other vehicles appear in each vehicle's map
 };
 
@@ -35,16 +35,18 @@ std::size_t candidateCount(const ReflectionSettings& settings);
 struct ReflectionCounters {
     std::uint32_t visible = 0, rebuilt = 0, fresh = 0, postponed = 0;
     std::uint64_t texels = 0, rays = 0;
-    std::size_t localMapBytes = 0;      ///< on the GPU
+    std::size_t localMapBytes = 0;  ///< on the GPU
     std::size_t referenceMapBytes = 0;
-    double milliseconds = 0;            ///< planning, building and uploading, CPU side
+    double milliseconds = 0;  ///< planning, building and uploading, CPU side
 };
 
-/// Runs the reflections of a frame: plans which local maps to build, builds them on all cores (or has the scene drawn, for
-/// `rerender`), uploads them. Keeps references to tracer and maps. Needs a current GL 4.5 context.
+/// Runs the reflections of a frame: plans which local maps to build, builds them on all cores (or has the
+/// scene drawn, for `rerender`), uploads them. Keeps references to tracer and maps. Needs a current GL 4.5
+/// context.
 class ReflectionEngine {
   public:
-    ReflectionEngine(const reflection::GridTracer& tracer, std::span<const reflection::PackedReferenceMap> maps,
+    ReflectionEngine(const reflection::GridTracer& tracer,
+                     std::span<const reflection::PackedReferenceMap> maps,
                      std::span<const vehicles::VehicleModel> models, const ReflectionSettings& settings);
     ~ReflectionEngine();
 
@@ -55,13 +57,15 @@ class ReflectionEngine {
     void replaceMaps(std::span<const reflection::PackedReferenceMap> maps);
 
     /// Plans and executes one frame. `drawer` must be prepared with the same scene.
-    const ReflectionPlan& update(const FrameScene& scene, std::span<const SeenVehicle> seen, reflection::SceneDrawer& drawer);
+    const ReflectionPlan& update(const FrameScene& scene, std::span<const SeenVehicle> seen,
+                                 reflection::SceneDrawer& drawer);
 
     reflection::LocalMapTextures textures() const;
     const ReflectionCounters& counters() const;
 
     /// The mesh of a vehicle's local map, as lines in face coordinates, for looking at: built anew.
-    std::vector<reflection::LocalMapMesh::Quad> meshOf(const glm::dvec3& centre, int face, int faceSize, int& latticeSize) const;
+    std::vector<reflection::LocalMapMesh::Quad> meshOf(const glm::dvec3& centre, int face, int faceSize,
+                                                       int& latticeSize) const;
 
   private:
     struct Impl;

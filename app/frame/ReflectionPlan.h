@@ -13,49 +13,52 @@ namespace app {
 
 /// A vehicle that the frame's views show.
 struct SeenVehicle {
-    std::uint32_t index = 0;      ///< into FrameScene::vehicles
-    float diameterPixels = 0;     ///< projected, the greatest over all views
+    std::uint32_t index = 0;   ///< into FrameScene::vehicles
+    float diameterPixels = 0;  ///< projected, the greatest over all views
 };
 
 /// One local map to build this frame.
 struct MapJob {
-    std::uint32_t vehicle = 0;    ///< index into FrameScene::vehicles
+    std::uint32_t vehicle = 0;  ///< index into FrameScene::vehicles
     reflection::LocalMapSlot slot;
-    glm::dvec3 centre{0};         ///< world metres
-    float error = 0;              ///< estimated error on screen if not built, pixels; infinite for a new map
+    glm::dvec3 centre{0};  ///< world metres
+    float error = 0;       ///< estimated error on screen if not built, pixels; infinite for a new map
 };
 
-/// What the reflections of one frame need: plain data, made without a GPU. A map that a scene does not need is not in it.
+/// What the reflections of one frame need: plain data, made without a GPU. A map that a scene does not need
+/// is not in it.
 struct ReflectionPlan {
-    std::vector<MapJob> jobs;                         ///< most urgent first
-    std::vector<reflection::LocalMapSlot> slots;      ///< one per FrameScene::vehicles; invalid: not reflected this frame
-    std::uint32_t visible = 0;                        ///< vehicles seen
-    std::uint32_t fresh = 0;                          ///< maps kept because their error on screen is below the threshold
-    std::uint32_t postponed = 0;                      ///< maps that the budget left for a later frame
-    std::uint64_t texels = 0;                         ///< to be built
+    std::vector<MapJob> jobs;  ///< most urgent first
+    std::vector<reflection::LocalMapSlot>
+        slots;                    ///< one per FrameScene::vehicles; invalid: not reflected this frame
+    std::uint32_t visible = 0;    ///< vehicles seen
+    std::uint32_t fresh = 0;      ///< maps kept because their error on screen is below the threshold
+    std::uint32_t postponed = 0;  ///< maps that the budget left for a later frame
+    std::uint64_t texels = 0;     ///< to be built
 };
 
 struct PlanOptions {
-    std::uint64_t texelBudget = 150'000;  ///< texels built a frame; at least one map is built whatever it costs
-    float texelsPerPixel = 0.5f;          ///< face size wanted for each pixel of the vehicle's projected diameter
-    float errorThreshold = 0.5f;          ///< pixels of shift of a reflected feature that are let stand
-    bool everyFrame = false;              ///< rebuild all visible maps every frame (measuring; the paper's way)
+    std::uint64_t texelBudget =
+        150'000;                  ///< texels built a frame; at least one map is built whatever it costs
+    float texelsPerPixel = 0.5f;  ///< face size wanted for each pixel of the vehicle's projected diameter
+    float errorThreshold = 0.5f;  ///< pixels of shift of a reflected feature that are let stand
+    bool everyFrame = false;      ///< rebuild all visible maps every frame (measuring; the paper's way)
 };
 
-/// Decides which local maps are built when. Keeps what it planned before: a map's age is the distance that its vehicle and
-/// its neighbours have moved since. Deterministic.
+/// Decides which local maps are built when. Keeps what it planned before: a map's age is the distance that
+/// its vehicle and its neighbours have moved since. Deterministic.
 ///
-/// The error on screen of a map grows with that distance: a feature at distance r seen from a centre that is off by s turns by
-/// about s / r, and a mirror that shows the half space over D pixels shifts it by about D s / (pi r). r is not known for each
-/// feature; a street's half width stands for it.
+/// The error on screen of a map grows with that distance: a feature at distance r seen from a centre that is
+/// off by s turns by about s / r, and a mirror that shows the half space over D pixels shifts it by about D s
+/// / (pi r). r is not known for each feature; a street's half width stands for it.
 class ReflectionPlanner {
   public:
     /// Forgets all maps: after a change of city, light or method.
     void reset();
 
     /// `seen`: vehicles in the views. `models`: height of each model's reflection centre above the road.
-    ReflectionPlan plan(const FrameScene& scene, std::span<const SeenVehicle> seen, std::span<const float> centreHeights,
-                        const PlanOptions& options);
+    ReflectionPlan plan(const FrameScene& scene, std::span<const SeenVehicle> seen,
+                        std::span<const float> centreHeights, const PlanOptions& options);
 
     /// Layers in use of each size class: what the atlas must hold.
     std::span<const int> layersNeeded() const { return layers_; }
@@ -65,7 +68,8 @@ class ReflectionPlanner {
         reflection::LocalMapSlot slot;
         glm::dvec3 centre{0};
         double heading = 0;
-        double neighbourMotion = 0;  ///< metres that neighbours moved since the map was built, weighted by nearness
+        double neighbourMotion =
+            0;  ///< metres that neighbours moved since the map was built, weighted by nearness
         std::uint64_t lastSeen = 0;
         bool built = false;
     };
@@ -73,14 +77,16 @@ class ReflectionPlanner {
     void release(reflection::LocalMapSlot slot);
 
     std::map<std::uint32_t, Held> held_;  ///< by vehicle id, ordered: the plan must not depend on hashing
-    std::vector<std::vector<std::int16_t>> free_ = std::vector<std::vector<std::int16_t>>(reflection::localMapFaceSizes.size());
+    std::vector<std::vector<std::int16_t>> free_ =
+        std::vector<std::vector<std::int16_t>>(reflection::localMapFaceSizes.size());
     std::vector<int> layers_ = std::vector<int>(reflection::localMapFaceSizes.size(), 0);
     std::uint64_t frame_ = 0;
     double lastTime_ = 0;
 };
 
-/// Class of map for a vehicle of this projected diameter: the coarsest whose face has `texelsPerPixel` texels a pixel, with
-/// a class held before kept until the size is a fifth beyond its bounds, so that a vehicle on the border does not flip.
+/// Class of map for a vehicle of this projected diameter: the coarsest whose face has `texelsPerPixel` texels
+/// a pixel, with a class held before kept until the size is a fifth beyond its bounds, so that a vehicle on
+/// the border does not flip.
 int sizeClassFor(float diameterPixels, float texelsPerPixel, int held = -1);
 
 }  // namespace app

@@ -31,13 +31,16 @@ constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::
 
 }  // namespace
 
-glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface, const vehicles::VehiclePose& pose,
-                          const glm::vec3& normal, const glm::vec3& towardsEye) {
+glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface,
+                          const vehicles::VehiclePose& pose, const glm::vec3& normal,
+                          const glm::vec3& towardsEye) {
     constexpr float inversePi = std::numbers::inv_pi_v<float>;
     const SurfaceOptics& optics = surfaces[std::min(static_cast<std::size_t>(surface), surfaces.size() - 1)];
     const glm::vec3 albedo = surface == vehicles::Surface::paint ? pose.paint : optics.albedo;
-    const glm::vec3 ambient = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, 0.5f + 0.5f * normal.z) * 0.85f;
-    const glm::vec3 light = ambient + lighting.sunIrradiance * std::max(glm::dot(normal, lighting.sunDirection), 0.0f);
+    const glm::vec3 ambient =
+        glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, 0.5f + 0.5f * normal.z) * 0.85f;
+    const glm::vec3 light =
+        ambient + lighting.sunIrradiance * std::max(glm::dot(normal, lighting.sunDirection), 0.0f);
     const float lit = lighting.lampsLit ? 1.0f : 0.0f;
     glm::vec3 emission(0);
     if (surface == vehicles::Surface::headLamp) emission = glm::vec3(6.0f, 5.6f, 5.0f) * lit;
@@ -53,20 +56,22 @@ glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface, c
     const float up = std::clamp(reflected.z * 2 + 0.5f, 0.0f, 1.0f);
     glm::vec3 mirrored = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, up) * (inversePi * 0.8f);
     float glint = std::max(glm::dot(reflected, lighting.sunDirection), 0.0f);
-    for (int doubling = 0; doubling < 7; ++doubling) glint *= glint;  // to the power of 128, as the shader does
+    for (int doubling = 0; doubling < 7; ++doubling)
+        glint *= glint;  // to the power of 128, as the shader does
     mirrored += lighting.sunIrradiance * (8 * glint * coat);
     return diffuse * (1 - fresnel) + mirrored * fresnel;
 }
 
 glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {
-    const auto ch = static_cast<float>(std::cos(pose.heading)), sh = static_cast<float>(std::sin(pose.heading));
+    const auto ch = static_cast<float>(std::cos(pose.heading)),
+               sh = static_cast<float>(std::sin(pose.heading));
     const auto cp = static_cast<float>(std::cos(pose.pitch)), sp = static_cast<float>(std::sin(pose.pitch));
     // Columns: forward (nose up by the pitch), left, up.
     return {glm::vec3(ch * cp, sh * cp, sp), glm::vec3(-sh, ch, 0), glm::vec3(-ch * sp, -sh * sp, cp)};
 }
 
-void shadeForLocalMap(const vehicles::VehicleModel& model, const vehicles::VehiclePose& pose, const Lighting& lighting,
-                      const glm::dvec3& centre, reflection::MovingObject& object) {
+void shadeForLocalMap(const vehicles::VehicleModel& model, const vehicles::VehiclePose& pose,
+                      const Lighting& lighting, const glm::dvec3& centre, reflection::MovingObject& object) {
     object.positions.clear();
     object.radiance.clear();
     object.indices.clear();
@@ -79,8 +84,8 @@ void shadeForLocalMap(const vehicles::VehicleModel& model, const vehicles::Vehic
         const float distance = glm::length(position);
         const glm::vec3 towardsEye = distance > 0 ? -position / distance : glm::vec3(0, 0, 1);
         object.positions.push_back(position);
-        object.radiance.push_back(
-            vehicleRadiance(lighting, static_cast<vehicles::Surface>(v.material), pose, rotation * v.normal, towardsEye));
+        object.radiance.push_back(vehicleRadiance(lighting, static_cast<vehicles::Surface>(v.material), pose,
+                                                  rotation * v.normal, towardsEye));
     }
     object.indices = mesh.indices;
 }

@@ -35,17 +35,19 @@ struct VehicleReflections {
     std::vector<reflection::LocalMapSlot> slots;  ///< one per FrameScene::vehicles; empty: all plain paint
 };
 
-/// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models; needs the same
-/// context current in every call.
+/// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models;
+/// needs the same context current in every call.
 class SceneRenderer final : public reflection::SceneDrawer {
   public:
-    SceneRenderer(const city::CityModel& city, std::span<const vehicles::VehicleModel> models, const RenderOptions& options);
+    SceneRenderer(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
+                  const RenderOptions& options);
     ~SceneRenderer() override;
 
     /// Takes over this frame's vehicles, lights and signal states. Call once a frame, before any drawing.
     void prepare(const FrameScene& scene);
 
-    /// Draws one of the prepared scene's views, tone mapped, into a framebuffer (0: the window), sRGB-encoded 8 bit.
+    /// Draws one of the prepared scene's views, tone mapped, into a framebuffer (0: the window), sRGB-encoded
+    /// 8 bit.
     void drawView(const View& view, const VehicleReflections& reflections, std::uint32_t framebuffer);
 
     void drawCube(const glm::dvec3& centre, const reflection::CubeTarget& target,
@@ -53,8 +55,8 @@ class SceneRenderer final : public reflection::SceneDrawer {
 
     const RenderCounters& counters() const;  ///< of the last drawView
 
-    /// Which vehicles of the prepared scene lie in the view and are not hidden by buildings: (index, projected diameter
-    /// in pixels) pairs. What the plan is made from.
+    /// Which vehicles of the prepared scene lie in the view and are not hidden by buildings: (index,
+    /// projected diameter in pixels) pairs. What the plan is made from.
     struct VisibleVehicle {
         std::uint32_t index;
         float diameterPixels;

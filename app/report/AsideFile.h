@@ -30,7 +30,8 @@ class AsideFile {
 /// file and the cause. Leaves the folder made, and no file.
 void requireWritable(const std::filesystem::path& file);
 
-/// Writes a whole file, text or any other bytes, that way. Throws std::runtime_error naming the file and the cause.
+/// Writes a whole file, text or any other bytes, that way. Throws std::runtime_error naming the file and the
+/// cause.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace app

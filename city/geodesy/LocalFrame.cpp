@@ -10,7 +10,8 @@ LocalFrame::LocalFrame(double latitude, double longitude, double height)
     : latitude_(latitude), longitude_(longitude), height_(height) {
     if (!std::isfinite(latitude) || !std::isfinite(longitude) || !std::isfinite(height))
         throw std::invalid_argument("a local frame's origin must be finite");
-    if (std::abs(latitude) > 90) throw std::invalid_argument("a latitude must lie between -90 and 90 degrees");
+    if (std::abs(latitude) > 90)
+        throw std::invalid_argument("a latitude must lie between -90 and 90 degrees");
 }
 
 glm::dvec3 LocalFrame::localFromGeodetic(double latitude, double longitude, double height) const {

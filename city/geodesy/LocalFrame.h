@@ -12,7 +12,8 @@ class LocalFrame {
     LocalFrame(double latitude, double longitude, double height);
 
     glm::dvec3 localFromGeodetic(double latitude, double longitude, double height) const;  ///< metres
-    glm::dvec3 geodeticFromLocal(const glm::dvec3& local) const;  ///< latitude, longitude (degrees), height (metres)
+    glm::dvec3 geodeticFromLocal(
+        const glm::dvec3& local) const;  ///< latitude, longitude (degrees), height (metres)
 
     double latitude() const { return latitude_; }
     double longitude() const { return longitude_; }

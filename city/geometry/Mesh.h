@@ -11,14 +11,14 @@ namespace city {
 
 /// One corner of a triangle mesh.
 struct Vertex {
-    glm::vec3 position{0};     ///< metres
-    glm::vec3 normal{0, 0, 1};  ///< unit length
-    glm::vec2 texcoord{0};     ///< in repeats of the material's pattern (see Material)
+    glm::vec3 position{0};       ///< metres
+    glm::vec3 normal{0, 0, 1};   ///< unit length
+    glm::vec2 texcoord{0};       ///< in repeats of the material's pattern (see Material)
     std::uint32_t material = 0;  ///< index into the owner's material table
 };
 
-/// Indexed triangles, counter-clockwise seen from their front. Vertices are shared only where position, normal,
-/// texture coordinate and material all agree.
+/// Indexed triangles, counter-clockwise seen from their front. Vertices are shared only where position,
+/// normal, texture coordinate and material all agree.
 struct Mesh {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;  ///< three per triangle

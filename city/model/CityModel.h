@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "city/geodesy/LocalFrame.h"
 #include "city/geometry/Aabb.h"
 #include "city/geometry/Mesh.h"
-#include "city/geodesy/LocalFrame.h"
 #include "city/model/Material.h"
 #include "city/roads/RoadNetwork.h"
 
@@ -25,8 +25,8 @@ struct Chunk {
     Aabb bounds;
 };
 
-/// A thing that stands in the city many times (a tree, a lamp). Levels from finest to coarsest, in the prototype's own
-/// frame: origin at its foot, z up, metres.
+/// A thing that stands in the city many times (a tree, a lamp). Levels from finest to coarsest, in the
+/// prototype's own frame: origin at its foot, z up, metres.
 struct Prototype {
     struct Level {
         Mesh mesh;
@@ -34,7 +34,8 @@ struct Prototype {
     };
     std::string name;
     std::vector<Level> levels;
-    bool inHeightfield = true;  ///< false for what is too thin to be a column of the heightfield (poles, wires)
+    bool inHeightfield =
+        true;  ///< false for what is too thin to be a column of the heightfield (poles, wires)
 };
 
 struct Placement {
@@ -57,8 +58,8 @@ struct TourStop {
     float time = 0;  ///< seconds from the start of the tour
 };
 
-/// The static world: everything that stands still. Pure data. World frame: right-handed, x east, y north, z up,
-/// metres, near the origin.
+/// The static world: everything that stands still. Pure data. World frame: right-handed, x east, y north, z
+/// up, metres, near the origin.
 struct CityModel {
     std::string name;
     Aabb bounds;
@@ -68,12 +69,13 @@ struct CityModel {
     std::vector<Placement> placements;
     RoadNetwork roads;
     std::vector<SignalHead> signalHeads;
-    std::vector<TourStop> tour;               ///< may be empty: the program then plans one along the lanes
-    std::optional<LocalFrame> frame;          ///< set where the city has a place on Earth
-    std::vector<std::string> notes;           ///< what an importer dropped or guessed, one sentence with a count each
+    std::vector<TourStop> tour;       ///< may be empty: the program then plans one along the lanes
+    std::optional<LocalFrame> frame;  ///< set where the city has a place on Earth
+    std::vector<std::string> notes;   ///< what an importer dropped or guessed, one sentence with a count each
 
-    std::size_t triangleCount() const;        ///< all placements at their finest level
-    /// 64-bit hash over everything that can be seen in a reference map: equal content, equal hash, on every machine.
+    std::size_t triangleCount() const;  ///< all placements at their finest level
+    /// 64-bit hash over everything that can be seen in a reference map: equal content, equal hash, on every
+    /// machine.
     std::uint64_t contentHash() const;
 };
 

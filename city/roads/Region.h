@@ -28,7 +28,8 @@ class Region {
     Region grown(double distance) const;
     /// Grown with corners kept sharp: few points more than before.
     Region widened(double distance) const;
-    /// Without points that lie within `tolerance` metres of the line between their neighbours; topology is kept.
+    /// Without points that lie within `tolerance` metres of the line between their neighbours; topology is
+    /// kept.
     Region simplified(double tolerance) const;
     Region clipped(double minX, double minY, double maxX, double maxY) const;
 

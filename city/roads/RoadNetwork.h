@@ -15,11 +15,12 @@ enum class LaneKind : std::uint8_t { car, tram };
 
 /// A directed strip of road that one file of vehicles follows. Right-hand traffic.
 struct Lane {
-    std::vector<glm::vec3> centreLine;  ///< at least two points, in driving direction, no two neighbours equal; world metres
-    float width = 3.25f;                ///< metres
-    float speedLimit = 13.9f;           ///< metres per second
+    std::vector<glm::vec3>
+        centreLine;  ///< at least two points, in driving direction, no two neighbours equal; world metres
+    float width = 3.25f;       ///< metres
+    float speedLimit = 13.9f;  ///< metres per second
     LaneKind kind = LaneKind::car;
-    std::uint32_t leftNeighbour = noIndex;   ///< lane one may change to, same direction
+    std::uint32_t leftNeighbour = noIndex;  ///< lane one may change to, same direction
     std::uint32_t rightNeighbour = noIndex;
     std::vector<std::uint32_t> connections;  ///< outgoing, indices into RoadNetwork::connections
 };
@@ -29,16 +30,17 @@ struct Connection {
     std::uint32_t fromLane = noIndex;
     std::uint32_t toLane = noIndex;
     std::uint32_t junction = noIndex;
-    std::vector<glm::vec3> centreLine;       ///< from the end of fromLane to the start of toLane
-    std::uint32_t signalGroup = noIndex;     ///< within the junction's signal; noIndex: not signalled
-    std::vector<std::uint32_t> conflicts;    ///< other connections of the junction whose path crosses or merges with this one
-    std::vector<std::uint32_t> yieldsTo;     ///< the part of `conflicts` that has right of way over this one
+    std::vector<glm::vec3> centreLine;    ///< from the end of fromLane to the start of toLane
+    std::uint32_t signalGroup = noIndex;  ///< within the junction's signal; noIndex: not signalled
+    std::vector<std::uint32_t>
+        conflicts;  ///< other connections of the junction whose path crosses or merges with this one
+    std::vector<std::uint32_t> yieldsTo;  ///< the part of `conflicts` that has right of way over this one
 };
 
 struct SignalPhase {
-    float duration = 20;                      ///< seconds
-    std::vector<std::uint32_t> greenGroups;   ///< signal groups that may go; a group not named is red
-    bool amber = false;                       ///< the named groups are about to lose green: stop if possible
+    float duration = 20;                     ///< seconds
+    std::vector<std::uint32_t> greenGroups;  ///< signal groups that may go; a group not named is red
+    bool amber = false;                      ///< the named groups are about to lose green: stop if possible
 };
 
 struct Signal {

@@ -18,8 +18,10 @@ struct StreetMaterials {
     std::uint32_t rail = 0;
 };
 
-/// Carriageways, junction areas, kerbs (0.12 m), pavements, lane lines, stop lines, pedestrian crossings and rails, slightly
-/// above z = 0 in layers that do not z-fight. `splitLength`: meshes are cut into pieces of about this size (metres) for culling.
-std::vector<Mesh> buildStreetSurfaces(const StreetGraph& streets, const StreetMaterials& materials, float splitLength = 100);
+/// Carriageways, junction areas, kerbs (0.12 m), pavements, lane lines, stop lines, pedestrian crossings and
+/// rails, slightly above z = 0 in layers that do not z-fight. `splitLength`: meshes are cut into pieces of
+/// about this size (metres) for culling.
+std::vector<Mesh> buildStreetSurfaces(const StreetGraph& streets, const StreetMaterials& materials,
+                                      float splitLength = 100);
 
 }  // namespace city

@@ -19,12 +19,15 @@ float radianceScaleOf(const ReferenceMap& map) {
     return most;
 }
 
-PackedReferenceMap pack(const ReferenceMap& map) { return PackedReferenceMap(map, radianceScaleOf(map)); }
+PackedReferenceMap pack(const ReferenceMap& map) {
+    return PackedReferenceMap(map, radianceScaleOf(map));
+}
 
 }  // namespace
 
-BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> positions, const ReferenceMapStore* store,
-                             const BakeOptions& options, const std::function<bool(std::size_t, std::size_t)>& carryOn) {
+BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> positions,
+                             const ReferenceMapStore* store, const BakeOptions& options,
+                             const std::function<bool(std::size_t, std::size_t)>& carryOn) {
     BakeResult result;
     std::vector<std::optional<PackedReferenceMap>> maps(positions.size());
     if (store) {
@@ -47,7 +50,8 @@ BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> po
         });
         for (std::size_t i = 0; i < damage.size(); ++i)
             if (!damage[i].empty()) result.damaged.push_back(store->file(i).string() + ": " + damage[i]);
-        result.loaded = static_cast<std::size_t>(std::count_if(maps.begin(), maps.end(), [](const auto& m) { return m.has_value(); }));
+        result.loaded = static_cast<std::size_t>(
+            std::count_if(maps.begin(), maps.end(), [](const auto& m) { return m.has_value(); }));
     }
 
     std::size_t done = result.loaded;
@@ -57,7 +61,8 @@ BakeResult bakeReferenceMaps(SceneDrawer& drawer, std::span<const glm::dvec3> po
         if (!baker) baker.emplace(options.faceSize, options.supersampling);
         const ReferenceMap map = baker->bake(drawer, positions[i]);
         if (store) store->save(i, map);
-        // Packed from what a later run will load (half floats), so that both runs show the same pictures bit for bit.
+        // Packed from what a later run will load (half floats), so that both runs show the same pictures bit
+        // for bit.
         std::optional<ReferenceMap> stored = store ? store->load(i).map : std::nullopt;
         maps[i] = pack(stored ? *stored : map);
         if (const auto key = store ? packedFileKey(store->file(i), store->contentHash()) : std::nullopt)

@@ -4,6 +4,8 @@
 
 namespace reflection {
 
-void finishGpu() { glFinish(); }
+void finishGpu() {
+    glFinish();
+}
 
 }  // namespace reflection

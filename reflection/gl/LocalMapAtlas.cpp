@@ -21,8 +21,8 @@ struct LocalMapAtlas::Impl {
         int layers = 0;
     };
     std::array<SizeClass, localMapFaceSizes.size()> classes;
-    /// A software rasteriser makes mipmaps by six small draws a level, with a flush of its pipeline each: some 10 ms a map, more than
-    /// drawing it. Filtering on the processor takes a tenth.
+    /// A software rasteriser makes mipmaps by six small draws a level, with a flush of its pipeline each:
+    /// some 10 ms a map, more than drawing it. Filtering on the processor takes a tenth.
     bool software = false;
     LocalMap map;
     PackedMips mips;
@@ -34,14 +34,16 @@ void LocalMapAtlas::Impl::filterOnProcessor(LocalMapSlot slot, int faceSize) {
     const GLuint array = classes[static_cast<std::size_t>(slot.sizeClass)].array.name();
     map.resize(faceSize);
     mips.texels.resize(map.red.size());
-    glGetTextureSubImage(array, 0, 0, 0, 6 * slot.layer, faceSize, faceSize, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
-                         static_cast<GLsizei>(mips.texels.size() * sizeof(std::uint32_t)), mips.texels.data());
-    for (std::size_t i = 0; i < map.red.size(); ++i) unpackTexel(mips.texels[i], map.red[i], map.green[i], map.blue[i]);
+    glGetTextureSubImage(
+        array, 0, 0, 0, 6 * slot.layer, faceSize, faceSize, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
+        static_cast<GLsizei>(mips.texels.size() * sizeof(std::uint32_t)), mips.texels.data());
+    for (std::size_t i = 0; i < map.red.size(); ++i)
+        unpackTexel(mips.texels[i], map.red[i], map.green[i], map.blue[i]);
     packMips(map, mips);
     for (int level = 1; level < mips.levelCount(); ++level) {
         const int side = faceSize >> level;
-        glTextureSubImage3D(array, level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
-                            mips.texels.data() + mips.levelOffset(level));
+        glTextureSubImage3D(array, level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB,
+                            GL_UNSIGNED_INT_10F_11F_11F_REV, mips.texels.data() + mips.levelOffset(level));
     }
 }
 
@@ -77,8 +79,8 @@ void LocalMapAtlas::upload(LocalMapSlot slot, const PackedMips& mips) {
     const Impl::SizeClass& c = impl_->classes[static_cast<std::size_t>(slot.sizeClass)];
     for (int level = 0; level < mips.levelCount(); ++level) {
         const int side = mips.faceSize >> level;
-        glTextureSubImage3D(c.array.name(), level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV,
-                            mips.texels.data() + mips.levelOffset(level));
+        glTextureSubImage3D(c.array.name(), level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB,
+                            GL_UNSIGNED_INT_10F_11F_11F_REV, mips.texels.data() + mips.levelOffset(level));
     }
 }
 
@@ -96,14 +98,16 @@ void LocalMapAtlas::finishDrawn(LocalMapSlot slot) {
         impl_->filterOnProcessor(slot, faceSize);
         return;
     }
-    const gl::Texture one = gl::Texture::view(GL_TEXTURE_CUBE_MAP, impl_->classes[static_cast<std::size_t>(slot.sizeClass)].array.name(),
-                                              format, 0, gl::mipLevels(faceSize), 6 * slot.layer, 6);
+    const gl::Texture one = gl::Texture::view(
+        GL_TEXTURE_CUBE_MAP, impl_->classes[static_cast<std::size_t>(slot.sizeClass)].array.name(), format, 0,
+        gl::mipLevels(faceSize), 6 * slot.layer, 6);
     glGenerateTextureMipmap(one.name());
 }
 
 LocalMapTextures LocalMapAtlas::textures() const {
     LocalMapTextures names;
-    for (std::size_t c = 0; c < impl_->classes.size(); ++c) names.cubeArrays[c] = impl_->classes[c].array.name();
+    for (std::size_t c = 0; c < impl_->classes.size(); ++c)
+        names.cubeArrays[c] = impl_->classes[c].array.name();
     return names;
 }
 

@@ -11,8 +11,8 @@
 
 namespace reflection {
 
-/// Local maps on the GPU: a cube map array of R11F_G11F_B10F with all mipmaps for each size class, grown on demand. Needs a
-/// current GL 4.5 context in every call and at destruction.
+/// Local maps on the GPU: a cube map array of R11F_G11F_B10F with all mipmaps for each size class, grown on
+/// demand. Needs a current GL 4.5 context in every call and at destruction.
 class LocalMapAtlas {
   public:
     LocalMapAtlas();
@@ -20,7 +20,8 @@ class LocalMapAtlas {
     LocalMapAtlas(LocalMapAtlas&&) noexcept;
     LocalMapAtlas& operator=(LocalMapAtlas&&) noexcept;
 
-    /// Makes room for layers 0 .. layers-1 of a class; contents of layers that were there stay. GL names may change.
+    /// Makes room for layers 0 .. layers-1 of a class; contents of layers that were there stay. GL names may
+    /// change.
     void reserve(int sizeClass, int layers);
 
     /// Replaces a map. The slot must be reserved and the mips' face size that of its class.

@@ -34,7 +34,8 @@ ReferenceMapBaker::ReferenceMapBaker(int faceSize, int supersampling) : impl_(st
 
 ReferenceMapBaker::~ReferenceMapBaker() = default;
 
-ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& centre, const CubeContent& content) {
+ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& centre,
+                                     const CubeContent& content) {
     const int n = impl_->faceSize;
     const int k = impl_->supersampling;
     const auto drawn = static_cast<std::size_t>(n * k);
@@ -48,9 +49,11 @@ ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& cent
     impl_->distancePixels.resize(6 * drawn * drawn);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureImage(impl_->colour.name(), 0, GL_RGB, GL_FLOAT,
-                      static_cast<GLsizei>(impl_->colourPixels.size() * sizeof(float)), impl_->colourPixels.data());
+                      static_cast<GLsizei>(impl_->colourPixels.size() * sizeof(float)),
+                      impl_->colourPixels.data());
     glGetTextureImage(impl_->distance.name(), 0, GL_RED, GL_FLOAT,
-                      static_cast<GLsizei>(impl_->distancePixels.size() * sizeof(float)), impl_->distancePixels.data());
+                      static_cast<GLsizei>(impl_->distancePixels.size() * sizeof(float)),
+                      impl_->distancePixels.data());
 
     ReferenceMap map;
     map.position = centre;
@@ -66,8 +69,9 @@ ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& cent
                 std::size_t count = 0;
                 for (std::size_t sy = 0; sy < static_cast<std::size_t>(k); ++sy) {
                     for (std::size_t sx = 0; sx < static_cast<std::size_t>(k); ++sx) {
-                        const std::size_t from = (face * drawn + y * static_cast<std::size_t>(k) + sy) * drawn +
-                                                 x * static_cast<std::size_t>(k) + sx;
+                        const std::size_t from =
+                            (face * drawn + y * static_cast<std::size_t>(k) + sy) * drawn +
+                            x * static_cast<std::size_t>(k) + sx;
                         sum += glm::vec3(impl_->colourPixels[3 * from], impl_->colourPixels[3 * from + 1],
                                          impl_->colourPixels[3 * from + 2]);
                         samples[count++] = impl_->distancePixels[from];

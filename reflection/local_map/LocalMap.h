@@ -6,12 +6,12 @@
 
 namespace reflection {
 
-/// A vehicle's own environment map in memory: linear RGB radiance and the ray parameter of what is seen, one plane
-/// each, faces in CubeMapping's order.
+/// A vehicle's own environment map in memory: linear RGB radiance and the ray parameter of what is seen, one
+/// plane each, faces in CubeMapping's order.
 struct LocalMap {
     int faceSize = 0;
     std::vector<float> red, green, blue;  ///< 6 * faceSize^2
-    std::vector<float> depth;             ///< along the texel's cube direction (greatest component 1), +infinity: sky
+    std::vector<float> depth;  ///< along the texel's cube direction (greatest component 1), +infinity: sky
 
     void resize(int size) {
         faceSize = size;
@@ -22,7 +22,8 @@ struct LocalMap {
         depth.resize(texels);
     }
     std::size_t faceOffset(int face) const {
-        return static_cast<std::size_t>(face) * static_cast<std::size_t>(faceSize) * static_cast<std::size_t>(faceSize);
+        return static_cast<std::size_t>(face) * static_cast<std::size_t>(faceSize) *
+               static_cast<std::size_t>(faceSize);
     }
 };
 

@@ -81,7 +81,8 @@ void LocalMapBuilder::fillReciprocal(int faceSize) {
         const float offsetX = static_cast<float>(q.x) / static_cast<float>(q.size);
         const float offsetY = static_cast<float>(q.y) / static_cast<float>(q.size);
         for (int y = y0; y < y1; ++y) {
-            float* row = reciprocal_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(faceSize);
+            float* row =
+                reciprocal_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(faceSize);
             if (!q.smooth) {
                 std::fill(row + x0, row + x1, q.centre);
                 continue;
@@ -114,25 +115,34 @@ void LocalMapBuilder::fillPaper(const LocalMapRequest& request, int face) {
             point[k] = sky ? d * skyDistance : d / q.corner[k];
             const float before = axisWeight(point[k], a.offset, b.offset);
             const auto valid = [&](const Candidate& c) {
-                return storedDistance(c, point[k]) + request.depthTolerance >= (sky ? skyDistance : glm::distance(point[k], c.offset));
+                return storedDistance(c, point[k]) + request.depthTolerance >=
+                       (sky ? skyDistance : glm::distance(point[k], c.offset));
             };
             const float wa = valid(a) ? before : 0, wb = valid(b) ? 1 - before : 0;
             // Both hidden: the closest one, the one of greater weight before the test (section 4.3).
             weight[k] = wa + wb > 0 ? wa / (wa + wb) : (before >= 0.5f ? 1.0f : 0.0f);
         }
-        const auto firstTexel = [&](int l) { return static_cast<int>(std::ceil(static_cast<float>(l) / latticeFromTexel - 0.5f)); };
+        const auto firstTexel = [&](int l) {
+            return static_cast<int>(std::ceil(static_cast<float>(l) / latticeFromTexel - 0.5f));
+        };
         const int x0 = firstTexel(q.x), x1 = std::min(n, firstTexel(q.x + q.size));
         const int y0 = firstTexel(q.y), y1 = std::min(n, firstTexel(q.y + q.size));
         for (int y = y0; y < y1; ++y) {
-            const float v = ((static_cast<float>(y) + 0.5f) * latticeFromTexel - static_cast<float>(q.y)) / static_cast<float>(q.size);
+            const float v = ((static_cast<float>(y) + 0.5f) * latticeFromTexel - static_cast<float>(q.y)) /
+                            static_cast<float>(q.size);
             for (int x = x0; x < x1; ++x) {
-                const float u = ((static_cast<float>(x) + 0.5f) * latticeFromTexel - static_cast<float>(q.x)) / static_cast<float>(q.size);
-                const glm::vec3 p = glm::mix(glm::mix(point[0], point[1], u), glm::mix(point[2], point[3], u), v);
-                const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
+                const float u =
+                    ((static_cast<float>(x) + 0.5f) * latticeFromTexel - static_cast<float>(q.x)) /
+                    static_cast<float>(q.size);
+                const glm::vec3 p =
+                    glm::mix(glm::mix(point[0], point[1], u), glm::mix(point[2], point[3], u), v);
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
                 px_[i] = p.x;
                 py_[i] = p.y;
                 pz_[i] = p.z;
-                weight_[i] = std::lerp(std::lerp(weight[0], weight[1], u), std::lerp(weight[2], weight[3], u), v);
+                weight_[i] =
+                    std::lerp(std::lerp(weight[0], weight[1], u), std::lerp(weight[2], weight[3], u), v);
             }
         }
     }
@@ -146,7 +156,8 @@ void LocalMapBuilder::fillBlend(const LocalMapRequest& request, int face) {
     for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {
             const glm::vec3 p = skyDistance * cubeDirection(face, glm::vec2(x, y) + 0.5f, n);
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
             px_[i] = p.x;
             py_[i] = p.y;
             pz_[i] = p.z;
@@ -177,7 +188,8 @@ void LocalMapBuilder::fillBox(const LocalMapRequest& request, int face) {
             if (l != 0) t = std::min(t, ((l > 0 ? box.left : -box.right) - ey) / l);
             if (d.z < 0) t = std::min(t, (-box.below - ez) / d.z);
             const glm::vec3 p = t * d;
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x);
             px_[i] = p.x;
             py_[i] = p.y;
             pz_[i] = p.z;
@@ -186,14 +198,16 @@ void LocalMapBuilder::fillBox(const LocalMapRequest& request, int face) {
     }
 }
 
-std::uint32_t LocalMapBuilder::buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face, LocalMap& map) {
+std::uint32_t LocalMapBuilder::buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face,
+                                         LocalMap& map) {
     const int n = request.faceSize;
     const std::size_t offset = map.faceOffset(face);
     const std::size_t texels = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     if (request.candidates.empty()) {
         for (std::vector<float>* plane : {&map.red, &map.green, &map.blue})
             std::fill_n(plane->begin() + static_cast<std::ptrdiff_t>(offset), texels, 0.0f);
-        std::fill_n(map.depth.begin() + static_cast<std::ptrdiff_t>(offset), texels, std::numeric_limits<float>::infinity());
+        std::fill_n(map.depth.begin() + static_cast<std::ptrdiff_t>(offset), texels,
+                    std::numeric_limits<float>::infinity());
         return 0;
     }
     if (request.method == LocalMapMethod::mem) {

@@ -23,31 +23,34 @@ enum class LocalMapMethod : std::uint8_t {
 
 /// A box aligned with the street, as parallax correction takes it: open above.
 struct StreetBox {
-    glm::vec3 forward{1, 0, 0};  ///< unit, horizontal
+    glm::vec3 forward{1, 0, 0};                            ///< unit, horizontal
     float ahead = 50, behind = 50, left = 10, right = 10;  ///< metres from the map's centre
     float below = 1.6f;
 };
 
-/// Estimates the box from the map's own distances: the median over the texels near each of the four horizontal directions and below.
+/// Estimates the box from the map's own distances: the median over the texels near each of the four
+/// horizontal directions and below.
 StreetBox streetBoxOf(const PackedReferenceMap& map, const glm::vec3& forward);
 
 struct LocalMapRequest {
     LocalMapMethod method = LocalMapMethod::mem;
-    glm::dvec3 centre{0};               ///< world metres
-    int faceSize = 128;                 ///< texels
+    glm::dvec3 centre{0};                   ///< world metres
+    int faceSize = 128;                     ///< texels
     std::span<const Candidate> candidates;  ///< best first; blend and memPaper take two (one is enough)
     MeshOptions mesh;
     LookupOptions lookup;
-    float depthTolerance = 1.5f;        ///< memPaper's depth test, metres: a heightfield hit may be off by a cell's diagonal
+    float depthTolerance =
+        1.5f;  ///< memPaper's depth test, metres: a heightfield hit may be off by a cell's diagonal
     glm::vec3 streetDirection{1, 0, 0};  ///< box: along the lane
 };
 
 /// Builds local maps; reusable, keeps its buffers. One builder a thread.
 class LocalMapBuilder {
   public:
-    /// Fills one face of `map`, which must have the request's face size. Without candidates the face becomes black sky. Returns the
-    /// rays traced.
-    std::uint32_t buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face, LocalMap& map);
+    /// Fills one face of `map`, which must have the request's face size. Without candidates the face becomes
+    /// black sky. Returns the rays traced.
+    std::uint32_t buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face,
+                            LocalMap& map);
 
     /// The mesh of the face built last (memPaper and mem).
     const LocalMapMesh& mesh() const { return mesh_; }

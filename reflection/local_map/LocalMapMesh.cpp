@@ -26,7 +26,8 @@ bool depthsDiffer(const std::array<float, 4>& w, float ratio) {
 bool isPlanar(const std::array<float, 4>& w, float centre, float tolerance) {
     const float scale = std::max(std::max(w[0], w[1]), std::max(w[2], w[3]));
     const float bound = tolerance * std::max(scale, centre);
-    return std::abs(w[0] + w[3] - w[1] - w[2]) <= bound && std::abs(0.25f * (w[0] + w[1] + w[2] + w[3]) - centre) <= bound;
+    return std::abs(w[0] + w[3] - w[1] - w[2]) <= bound &&
+           std::abs(0.25f * (w[0] + w[1] + w[2] + w[3]) - centre) <= bound;
 }
 
 }  // namespace
@@ -52,15 +53,18 @@ void LocalMapMesh::traceRequested(const GridTracer& tracer, const glm::vec3& cen
         dz_[i] = d.z;
     }
     tracer.traceFan(centre, dx_, dy_, dz_, t_);
-    // A reciprocal of a hit at the centre itself would be infinite; nothing in a street is nearer than a millimetre.
+    // A reciprocal of a hit at the centre itself would be infinite; nothing in a street is nearer than a
+    // millimetre.
     constexpr float nearest = 1e-3f;
-    for (std::size_t i = 0; i < count; ++i) nodes_[wanted_[i]] = t_[i] >= nearest ? 1.0f / t_[i] : 1.0f / nearest;
+    for (std::size_t i = 0; i < count; ++i)
+        nodes_[wanted_[i]] = t_[i] >= nearest ? 1.0f / t_[i] : 1.0f / nearest;
     rays_ += static_cast<std::uint32_t>(count);
     wanted_.clear();
     wantedAt_.clear();
 }
 
-void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int face, const MeshOptions& options) {
+void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int face,
+                         const MeshOptions& options) {
     const int depth = std::clamp(options.depth, 0, 8);
     const int base = std::clamp(options.baseCells, 1, greatestLattice >> depth);
     lattice_ = base << depth;
@@ -71,15 +75,19 @@ void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int 
     nodes_.assign(centres + static_cast<std::size_t>(lattice_) * static_cast<std::size_t>(lattice_), unknown);
 
     const bool planarity = options.criterion == RefineCriterion::planarity;
-    const auto node = [side](int x, int y) { return static_cast<std::uint32_t>(y) * side + static_cast<std::uint32_t>(x); };
+    const auto node = [side](int x, int y) {
+        return static_cast<std::uint32_t>(y) * side + static_cast<std::uint32_t>(x);
+    };
     const auto middle = [&](int x, int y, int size) {
-        return size == 1 ? centres + static_cast<std::uint32_t>(y * lattice_ + x) : node(x + size / 2, y + size / 2);
+        return size == 1 ? centres + static_cast<std::uint32_t>(y * lattice_ + x)
+                         : node(x + size / 2, y + size / 2);
     };
 
     active_.clear();
     for (int y = 0; y < base; ++y)
         for (int x = 0; x < base; ++x)
-            active_.push_back({static_cast<std::uint16_t>(x << depth), static_cast<std::uint16_t>(y << depth)});
+            active_.push_back(
+                {static_cast<std::uint16_t>(x << depth), static_cast<std::uint16_t>(y << depth)});
 
     for (int size = 1 << depth; !active_.empty(); size /= 2) {
         for (const Cell& c : active_) {
@@ -89,7 +97,8 @@ void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int 
             }
             if (planarity) {
                 const float half = 0.5f * static_cast<float>(size);
-                request(middle(c.x, c.y, size), static_cast<float>(c.x) + half, static_cast<float>(c.y) + half);
+                request(middle(c.x, c.y, size), static_cast<float>(c.x) + half,
+                        static_cast<float>(c.y) + half);
             }
         }
         traceRequested(tracer, centre, face);
@@ -97,9 +106,12 @@ void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int 
         next_.clear();
         for (const Cell& c : active_) {
             std::array<float, 4> w;
-            for (int k = 0; k < 4; ++k) w[static_cast<std::size_t>(k)] = nodes_[node(c.x + (k & 1) * size, c.y + (k >> 1) * size)];
-            const float mid = planarity ? nodes_[middle(c.x, c.y, size)] : 0.25f * (w[0] + w[1] + w[2] + w[3]);
-            const bool smooth = planarity ? isPlanar(w, mid, options.threshold) : !depthsDiffer(w, options.threshold);
+            for (int k = 0; k < 4; ++k)
+                w[static_cast<std::size_t>(k)] = nodes_[node(c.x + (k & 1) * size, c.y + (k >> 1) * size)];
+            const float mid =
+                planarity ? nodes_[middle(c.x, c.y, size)] : 0.25f * (w[0] + w[1] + w[2] + w[3]);
+            const bool smooth =
+                planarity ? isPlanar(w, mid, options.threshold) : !depthsDiffer(w, options.threshold);
             if (!smooth && size > 1) {
                 const int half = size / 2;
                 for (int k = 0; k < 4; ++k)
@@ -107,7 +119,12 @@ void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int 
                                      static_cast<std::uint16_t>(c.y + (k >> 1) * half)});
                 continue;
             }
-            quads_.push_back({c.x, c.y, static_cast<std::uint16_t>(size), smooth || !planarity, {w[0], w[1], w[2], w[3]}, mid});
+            quads_.push_back({c.x,
+                              c.y,
+                              static_cast<std::uint16_t>(size),
+                              smooth || !planarity,
+                              {w[0], w[1], w[2], w[3]},
+                              mid});
         }
         active_.swap(next_);
         if (size == 1) break;

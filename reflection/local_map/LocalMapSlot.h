@@ -5,7 +5,8 @@
 
 namespace reflection {
 
-/// Face sizes of local maps, finest first. A reflector's map lives in one layer of the cube map array of its class.
+/// Face sizes of local maps, finest first. A reflector's map lives in one layer of the cube map array of its
+/// class.
 inline constexpr std::array<int, 5> localMapFaceSizes{128, 64, 32, 16, 8};
 
 /// Where a reflector finds its environment.

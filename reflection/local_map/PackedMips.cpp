@@ -13,23 +13,27 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Rounds non-negative floats to unsigned floats of 5 exponent bits and 6 (11 bit) or 5 (10 bit) mantissa bits.
+/// Rounds non-negative floats to unsigned floats of 5 exponent bits and 6 (11 bit) or 5 (10 bit) mantissa
+/// bits.
 template <int mantissaBits, class D, class V>
 HWY_INLINE auto toSmallFloat(D d, V value) {
     const hn::RebindToUnsigned<D> dw;
     constexpr int drop = 23 - mantissaBits;
-    // Greatest finite small float is (2 - 2^-mantissaBits) * 2^15; smallest normal 2^-14, below it counts as 0.
+    // Greatest finite small float is (2 - 2^-mantissaBits) * 2^15; smallest normal 2^-14, below it counts as
+    // 0.
     const auto greatest = hn::Set(d, (2.0f - 1.0f / static_cast<float>(1 << mantissaBits)) * 32768.0f);
     const auto smallest = hn::Set(d, 1.0f / 16384.0f);
     const auto usable = hn::Ge(value, smallest);  // false for NaN
     const auto clamped = hn::Min(value, greatest);
-    const auto bits = hn::Sub(hn::Add(hn::BitCast(dw, clamped), hn::Set(dw, 1u << (drop - 1))), hn::Set(dw, 112u << 23));
+    const auto bits =
+        hn::Sub(hn::Add(hn::BitCast(dw, clamped), hn::Set(dw, 1u << (drop - 1))), hn::Set(dw, 112u << 23));
     const auto most = hn::Set(dw, (30u << mantissaBits) | ((1u << mantissaBits) - 1));
     const auto code = hn::Min(hn::ShiftRight<drop>(bits), most);
     return hn::IfThenElseZero(hn::RebindMask(dw, usable), code);
 }
 
-void PackTexels(const float* red, const float* green, const float* blue, std::uint32_t* out, std::size_t count) {
+void PackTexels(const float* red, const float* green, const float* blue, std::uint32_t* out,
+                std::size_t count) {
     const auto pack = [&](auto d, std::size_t i) {
         const hn::RebindToUnsigned<decltype(d)> dw;
         const auto r = toSmallFloat<6>(d, hn::LoadU(d, red + i));
@@ -75,7 +79,9 @@ HWY_EXPORT(PackTexels);
 HWY_EXPORT(Halve);
 
 int PackedMips::levelCount() const {
-    return std::has_single_bit(static_cast<unsigned>(faceSize)) ? std::bit_width(static_cast<unsigned>(faceSize)) : 1;
+    return std::has_single_bit(static_cast<unsigned>(faceSize))
+               ? std::bit_width(static_cast<unsigned>(faceSize))
+               : 1;
 }
 
 std::size_t PackedMips::levelOffset(int level) const {
@@ -100,14 +106,16 @@ void packMips(const LocalMap& map, PackedMips& out) {
             for (int c = 0; c < 3; ++c) {
                 current[c].resize(count);
                 for (std::size_t face = 0; face < 6; ++face)
-                    HWY_DYNAMIC_DISPATCH(Halve)(planes[c] + face * 4 * side * side, current[c].data() + face * side * side, side);
+                    HWY_DYNAMIC_DISPATCH(Halve)
+                    (planes[c] + face * 4 * side * side, current[c].data() + face * side * side, side);
             }
             for (int c = 0; c < 3; ++c) {
                 previous[c].swap(current[c]);
                 planes[c] = previous[c].data();
             }
         }
-        HWY_DYNAMIC_DISPATCH(PackTexels)(planes[0], planes[1], planes[2], out.texels.data() + out.levelOffset(level), count);
+        HWY_DYNAMIC_DISPATCH(PackTexels)
+        (planes[0], planes[1], planes[2], out.texels.data() + out.levelOffset(level), count);
     }
 }
 

@@ -7,18 +7,19 @@
 
 namespace reflection {
 
-/// A local map ready for upload: all mipmap levels in GL_UNSIGNED_INT_10F_11F_11F_REV (4 bytes a texel), level 0 first, six
-/// faces a level. Level k is the 2x2 box filter of level k-1, in linear radiance: what gloss samples.
+/// A local map ready for upload: all mipmap levels in GL_UNSIGNED_INT_10F_11F_11F_REV (4 bytes a texel),
+/// level 0 first, six faces a level. Level k is the 2x2 box filter of level k-1, in linear radiance: what
+/// gloss samples.
 struct PackedMips {
     int faceSize = 0;
     std::vector<std::uint32_t> texels;
 
-    int levelCount() const;                     ///< log2(faceSize) + 1
-    std::size_t levelOffset(int level) const;   ///< index of the level's first texel
+    int levelCount() const;                    ///< log2(faceSize) + 1
+    std::size_t levelOffset(int level) const;  ///< index of the level's first texel
 };
 
-/// Packs a map; a face size that is not a power of two gets level 0 alone. Values are clamped to what 10 and 11 bit floats hold;
-/// negative and NaN become 0. Reuses `out`'s memory.
+/// Packs a map; a face size that is not a power of two gets level 0 alone. Values are clamped to what 10 and
+/// 11 bit floats hold; negative and NaN become 0. Reuses `out`'s memory.
 void packMips(const LocalMap& map, PackedMips& out);
 
 /// One packed texel back to floats (the slow way; oracle and readers).

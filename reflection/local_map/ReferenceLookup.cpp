@@ -1,4 +1,5 @@
-// Compiled once for every instruction set that Highway knows on this architecture; the best is chosen at run time.
+// Compiled once for every instruction set that Highway knows on this architecture; the best is chosen at run
+// time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/local_map/ReferenceLookup.cpp"
 #include <hwy/foreach_target.h>
@@ -62,7 +63,8 @@ HWY_INLINE FacePoint toFace(VF x, VF y, VF z, int faceSize) {
     const VI pair = hn::IfThenElse(hn::RebindMask(di, isX), hn::Zero(di),
                                    hn::IfThenElse(hn::RebindMask(di, isY), hn::Set(di, 2), hn::Set(di, 4)));
     const VI negative = hn::BitCast(di, hn::ShiftRight<31>(hn::BitCast(Word(), value)));
-    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half), major};
+    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half),
+            major};
 }
 
 /// The 20-bit word of a bordered texel.
@@ -96,7 +98,8 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
     const Word dw;
     const FacePoint p = toFace(x, y, z, map.faceSize);
     const VF half = hn::Set(d, 0.5f);
-    // In bordered texels the centre of texel i lies at i + 1.5; clamped, since rounding may pass the face's edge.
+    // In bordered texels the centre of texel i lies at i + 1.5; clamped, since rounding may pass the face's
+    // edge.
     const VF most = hn::Set(d, static_cast<float>(map.faceSize) + 0.9999f);
     const VF u = hn::Min(hn::Max(hn::Add(p.u, half), hn::Zero(d)), most);
     const VF v = hn::Min(hn::Max(hn::Add(p.v, half), hn::Zero(d)), most);
@@ -106,14 +109,16 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
     const VI row = hn::Set(di, map.faceSize + 2);
     const VI one = hn::Set(di, 1);
     const VW w00 = fetchWord(map, index), w10 = fetchWord(map, hn::Add(index, one));
-    const VW w01 = fetchWord(map, hn::Add(index, row)), w11 = fetchWord(map, hn::Add(hn::Add(index, row), one));
+    const VW w01 = fetchWord(map, hn::Add(index, row)),
+             w11 = fetchWord(map, hn::Add(hn::Add(index, row), one));
     const auto bilinear = [&](VF a, VF b, VF c, VF e) {
         const VF top = hn::MulAdd(fx, hn::Sub(b, a), a), bottom = hn::MulAdd(fx, hn::Sub(e, c), c);
         return hn::MulAdd(fy, hn::Sub(bottom, top), top);
     };
     const auto nearness = [&](VW word) {
         const VW code = hn::And(word, hn::Set(dw, PackedReferenceMap::nearnessMask));
-        return hn::BitCast(d, hn::Add(hn::ShiftLeft<16>(code), hn::Set(dw, PackedReferenceMap::nearnessExponentBias << 23)));
+        return hn::BitCast(
+            d, hn::Add(hn::ShiftLeft<16>(code), hn::Set(dw, PackedReferenceMap::nearnessExponentBias << 23)));
     };
     const auto sum = [&](VW word) {
         const VW code = hn::ShiftRight<PackedReferenceMap::nearnessBits>(word);
@@ -121,7 +126,9 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
                                       hn::Set(dw, PackedReferenceMap::sumExponentBias << 23)));
     };
     Probe result;
-    result.disagreement = hn::Sub(hn::Mul(p.depth, bilinear(nearness(w00), nearness(w10), nearness(w01), nearness(w11))), hn::Set(d, 1.0f));
+    result.disagreement =
+        hn::Sub(hn::Mul(p.depth, bilinear(nearness(w00), nearness(w10), nearness(w01), nearness(w11))),
+                hn::Set(d, 1.0f));
     result.sum = bilinear(sum(w00), sum(w10), sum(w01), sum(w11));
     const VI columns = hn::Set(di, map.chromaColumns);
     const VI rows = hn::Set(di, (map.faceSize + 2) / 2);
@@ -139,7 +146,8 @@ HWY_INLINE Colour colourOf(const MapView& map, VF sum, VI chromaBlock) {
     const Float d;
     const Int di;
     const Word dw;
-    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma), hn::ShiftLeft<1>(chromaBlock));
+    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma),
+                                       hn::ShiftLeft<1>(chromaBlock));
     const VW low = hn::Set(dw, 0xffu);
     const VF unit = hn::Set(d, 1.0f / 255.0f);
     const VF red = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(shares, low))), unit);
@@ -151,14 +159,15 @@ HWY_INLINE Colour colourOf(const MapView& map, VF sum, VI chromaBlock) {
 
 MapView viewOf(const Candidate& c, int localFaceSize) {
     const PackedReferenceMap::Level& level = c.map->levelFor(localFaceSize);
-    return {level.words(), level.chroma(), level.faceSize(), level.chromaColumns(), c.map->radianceScale(),
-            c.offset.x, c.offset.y, c.offset.z};
+    return {level.words(),          level.chroma(), level.faceSize(), level.chromaColumns(),
+            c.map->radianceScale(), c.offset.x,     c.offset.y,       c.offset.z};
 }
 
-/// Puts the maps first that see the point at about the scale at which the local map does. A map much farther from it than the
-/// local map's centre lacks detail; a much nearer one has more than the local map can hold, which would alias.
-void orderByScale(std::span<const Candidate> candidates, const glm::vec3& point, std::span<std::uint8_t> order,
-                  std::span<float> misfit) {
+/// Puts the maps first that see the point at about the scale at which the local map does. A map much farther
+/// from it than the local map's centre lacks detail; a much nearer one has more than the local map can hold,
+/// which would alias.
+void orderByScale(std::span<const Candidate> candidates, const glm::vec3& point,
+                  std::span<std::uint8_t> order, std::span<float> misfit) {
     const float own = point.x * point.x + point.y * point.y + point.z * point.z;
     for (std::size_t k = 0; k < order.size(); ++k) {
         const glm::vec3 o = candidates[k].offset;
@@ -178,12 +187,12 @@ void orderByScale(std::span<const Candidate> candidates, const glm::vec3& point,
 /// The map's answer for the point t d of a ray.
 HWY_INLINE Probe probeAlong(const MapView& map, VF dx, VF dy, VF dz, VF t) {
     const Float d;
-    return probe(map, hn::Sub(hn::Mul(t, dx), hn::Set(d, map.ox)), hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy)),
-                 hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz)));
+    return probe(map, hn::Sub(hn::Mul(t, dx), hn::Set(d, map.ox)),
+                 hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy)), hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz)));
 }
 
-void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate> candidates, const LookupOptions& options,
-                   LocalMap& out) {
+void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate> candidates,
+                   const LookupOptions& options, LocalMap& out) {
     const Float d;
     const int n = out.faceSize;
     const std::size_t lanes = hn::Lanes(d);
@@ -243,14 +252,16 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
         const std::size_t middle = count / 2;
         HWY_ALIGN float startLanes[HWY_MAX_BYTES / sizeof(float)];
         hn::Store(start, d, startLanes);
-        orderByScale(candidates, startLanes[middle] * (f.major + texelS[middle] * f.sAxis + texelT[middle] * f.tAxis),
+        orderByScale(candidates,
+                     startLanes[middle] * (f.major + texelS[middle] * f.sAxis + texelT[middle] * f.tAxis),
                      std::span(order).first(candidates.size()), misfit);
 
         VF bestError = infinity, bestDepth = start;
         Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
         for (std::size_t k = 0; k < candidates.size(); ++k) {
             const MapView& map = views[order[k]];
-            const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox), hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
+            const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox),
+                                     hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
             VF ta = start;
             Probe at = probeAlong(map, dx, dy, dz, ta);
             VF qa = at.disagreement, sum = at.sum, error = hn::Abs(qa), depth = ta;
@@ -260,20 +271,22 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
                 if (hn::AllTrue(d, hn::Le(hn::Min(error, bestError), agreement))) break;
                 VF next;
                 if (step == 1) {
-                    // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray parameter is
-                    // (d.C + (t d.d - d.C) / (1 + q)) / d.d.
+                    // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray
+                    // parameter is (d.C + (t d.d - d.C) / (1 + q)) / d.d.
                     const VF scale = hn::Div(one, hn::Max(hn::Add(qa, one), hn::Set(d, 1e-4f)));
                     next = hn::Div(hn::MulAdd(hn::Sub(hn::Mul(ta, dd), dc), scale, dc), dd);
                 } else {
                     const VF slope = hn::Sub(qb, qa);
                     const MF flat = hn::Lt(hn::Abs(slope), hn::Set(d, 1e-6f));
-                    next = hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
+                    next =
+                        hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
                     next = hn::IfThenElse(flat, tb, next);
                 }
                 // The candidate's own surface is where it is, however far the start; a secant may overshoot.
                 const VF quarter = hn::Mul(tb, hn::Set(d, 0.25f));
                 next = hn::Min(next, sky);
-                next = step == 1 ? hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, quarter) : hn::Max(next, quarter);
+                next = step == 1 ? hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, quarter)
+                                 : hn::Max(next, quarter);
                 ta = tb;
                 qa = qb;
                 tb = next;
@@ -298,7 +311,8 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
             if (hn::AllTrue(d, hn::Le(bestError, agreement))) break;
         }
         // Between the farthest building and the sky there is nothing: halfway decides.
-        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, hn::Set(d, 0.5f * PackedReferenceMap::skyDepth)), infinity, bestDepth);
+        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, hn::Set(d, 0.5f * PackedReferenceMap::skyDepth)),
+                                   infinity, bestDepth);
 
         const auto store = [&](VF value, std::vector<float>& plane) {
             if (count == lanes) {
@@ -316,11 +330,12 @@ void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate>
     }
 }
 
-void LookUpBlended(int face, const float* px, const float* py, const float* pz, const float* weightA, const Candidate& a,
-                   const Candidate& b, LocalMap& out) {
+void LookUpBlended(int face, const float* px, const float* py, const float* pz, const float* weightA,
+                   const Candidate& a, const Candidate& b, LocalMap& out) {
     const Float d;
     const std::size_t lanes = hn::Lanes(d);
-    const std::size_t texels = static_cast<std::size_t>(out.faceSize) * static_cast<std::size_t>(out.faceSize);
+    const std::size_t texels =
+        static_cast<std::size_t>(out.faceSize) * static_cast<std::size_t>(out.faceSize);
     const std::size_t base = out.faceOffset(face);
     const MapView mapA = viewOf(a, out.faceSize), mapB = viewOf(b, out.faceSize);
     for (std::size_t first = 0; first < texels; first += lanes) {
@@ -334,7 +349,8 @@ void LookUpBlended(int face, const float* px, const float* py, const float* pz, 
         };
         const VF x = load(px, 0), y = load(py, 1), z = load(pz, 2), w = load(weightA, 3);
         const auto at = [&](const MapView& map) {
-            const Probe p = probe(map, hn::Sub(x, hn::Set(d, map.ox)), hn::Sub(y, hn::Set(d, map.oy)), hn::Sub(z, hn::Set(d, map.oz)));
+            const Probe p = probe(map, hn::Sub(x, hn::Set(d, map.ox)), hn::Sub(y, hn::Set(d, map.oy)),
+                                  hn::Sub(z, hn::Set(d, map.oz)));
             return colourOf(map, p.sum, p.chromaBlock);
         };
         const Colour ca = at(mapA), cb = at(mapB);
@@ -375,7 +391,8 @@ float storedDistance(const Candidate& candidate, const glm::vec3& point) {
     const PackedReferenceMap::Level& level = candidate.map->levels().front();
     const int n = level.faceSize();
     const auto texel = [n](float st) {
-        return st > -1 ? std::min(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), n - 1) : 0;  // NaN: 0
+        return st > -1 ? std::min(static_cast<int>((st * 0.5f + 0.5f) * static_cast<float>(n)), n - 1)
+                       : 0;  // NaN: 0
     };
     return level.distanceAt(p.face, texel(p.st.x), texel(p.st.y));
 }

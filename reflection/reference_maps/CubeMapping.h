@@ -7,9 +7,10 @@
 
 namespace reflection {
 
-/// One face of a cube map in OpenGL's order and orientation (+X -X +Y -Y +Z -Z, OpenGL 4.5 core, table 8.19): the
-/// point (s, t) in [-1, 1]^2 of the face lies in direction major + s * sAxis + t * tAxis. The direction is linear in s
-/// and t, and its component along the major axis is 1 in size: that is what makes 1 / (ray parameter) of a plane linear over a face.
+/// One face of a cube map in OpenGL's order and orientation (+X -X +Y -Y +Z -Z, OpenGL 4.5 core, table 8.19):
+/// the point (s, t) in [-1, 1]^2 of the face lies in direction major + s * sAxis + t * tAxis. The direction
+/// is linear in s and t, and its component along the major axis is 1 in size: that is what makes 1 / (ray
+/// parameter) of a plane linear over a face.
 struct CubeFace {
     glm::vec3 major;
     glm::vec3 sAxis;
@@ -25,7 +26,8 @@ inline constexpr std::array<CubeFace, 6> cubeFaces{{
     {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
 }};
 
-/// Direction through a point of a face given in texels (0 .. faceSize from edge to edge; texel centres at .5).
+/// Direction through a point of a face given in texels (0 .. faceSize from edge to edge; texel centres at
+/// .5).
 inline glm::vec3 cubeDirection(int face, glm::vec2 texel, int faceSize) {
     const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
     const glm::vec2 st = texel * (2.0f / static_cast<float>(faceSize)) - 1.0f;
@@ -37,8 +39,8 @@ struct CubePoint {
     glm::vec2 st;  ///< -1 .. 1
 };
 
-/// Where a direction meets the cube. On an edge or corner the first of x, y, z with the greatest size decides. The zero
-/// vector and NaN give face 0 with whatever st follows.
+/// Where a direction meets the cube. On an edge or corner the first of x, y, z with the greatest size
+/// decides. The zero vector and NaN give face 0 with whatever st follows.
 inline CubePoint cubePoint(const glm::vec3& d) {
     const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
     int face;
@@ -59,7 +61,8 @@ inline CubePoint cubePoint(const glm::vec3& d) {
     return {face, glm::vec2(s / major, t / major)};
 }
 
-/// Solid angle of a texel whose centre has these face coordinates, in steradians (exact in the limit of small texels).
+/// Solid angle of a texel whose centre has these face coordinates, in steradians (exact in the limit of small
+/// texels).
 inline float texelSolidAngle(glm::vec2 st, int faceSize) {
     const float side = 2.0f / static_cast<float>(faceSize);
     const float r2 = 1 + st.x * st.x + st.y * st.y;

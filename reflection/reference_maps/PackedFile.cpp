@@ -18,7 +18,8 @@ constexpr std::uint64_t magic = 0x3170616d6b63616dull;  // "mackmap1": magic and
 constexpr std::uint32_t mostLevels = 16;
 constexpr std::uint32_t greatestFace = 8192;
 
-/// Multiply-and-fold over 8-byte words: finds every truncation and flipped bit that a disk makes, at memory speed.
+/// Multiply-and-fold over 8-byte words: finds every truncation and flipped bit that a disk makes, at memory
+/// speed.
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
     std::uint64_t hash = 0x9e3779b97f4a7c15ull ^ size;
     std::size_t i = 0;
@@ -101,7 +102,8 @@ std::optional<PackedReferenceMap> loadPacked(const std::filesystem::path& file, 
     const auto position = reader.get<glm::dvec3>();
     const auto scale = reader.get<float>();
     const auto levelCount = reader.get<std::uint32_t>();
-    if (!reader.good || levelCount < 1 || levelCount > mostLevels || !std::isfinite(scale)) return std::nullopt;
+    if (!reader.good || levelCount < 1 || levelCount > mostLevels || !std::isfinite(scale))
+        return std::nullopt;
     std::vector<PackedReferenceMap::Level> levels;
     for (std::uint32_t k = 0; k < levelCount; ++k) {
         const auto faceSize = reader.get<std::uint32_t>();
@@ -128,7 +130,8 @@ bool savePacked(const std::filesystem::path& file, const PackedFileKey& key, con
     for (const PackedReferenceMap::Level& level : map.levels()) {
         writer.put(static_cast<std::uint32_t>(level.faceSize()));
         writer.put(level.words(), PackedReferenceMap::Level::wordBytes(level.faceSize()));
-        writer.put(level.chroma(), PackedReferenceMap::Level::chromaCount(level.faceSize()) * sizeof(std::uint16_t));
+        writer.put(level.chroma(),
+                   PackedReferenceMap::Level::chromaCount(level.faceSize()) * sizeof(std::uint16_t));
     }
     writer.put(checksum(writer.bytes.data(), writer.bytes.size()));
 
@@ -136,7 +139,8 @@ bool savePacked(const std::filesystem::path& file, const PackedFileKey& key, con
     std::error_code error;
     {
         std::ofstream out(aside, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(writer.bytes.data()), static_cast<std::streamsize>(writer.bytes.size()));
+        out.write(reinterpret_cast<const char*>(writer.bytes.data()),
+                  static_cast<std::streamsize>(writer.bytes.size()));
         if (!out.flush()) {
             out.close();
             std::filesystem::remove(aside, error);

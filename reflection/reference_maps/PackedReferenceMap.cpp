@@ -73,11 +73,16 @@ PackedReferenceMap::PackedReferenceMap(const ReferenceMap& map, float radianceSc
     }
 }
 
-PackedReferenceMap::PackedReferenceMap(const glm::dvec3& position, float radianceScale, std::vector<Level> levels)
+PackedReferenceMap::PackedReferenceMap(const glm::dvec3& position, float radianceScale,
+                                       std::vector<Level> levels)
     : position_(position), radianceScale_(radianceScale), levels_(std::move(levels)) {}
 
-PackedReferenceMap::Level::Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words, std::vector<std::uint16_t> chroma)
-    : faceSize_(faceSize), radianceScale_(radianceScale), words_(std::move(words)), chroma_(std::move(chroma)) {}
+PackedReferenceMap::Level::Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words,
+                                 std::vector<std::uint16_t> chroma)
+    : faceSize_(faceSize),
+      radianceScale_(radianceScale),
+      words_(std::move(words)),
+      chroma_(std::move(chroma)) {}
 
 std::size_t PackedReferenceMap::Level::wordBytes(int faceSize) {
     const auto m = static_cast<std::size_t>(faceSize + 2);
@@ -85,7 +90,9 @@ std::size_t PackedReferenceMap::Level::wordBytes(int faceSize) {
 }
 
 std::size_t PackedReferenceMap::Level::chromaCount(int faceSize) {
-    return 6 * static_cast<std::size_t>((faceSize + 2 + 3) / 4) * static_cast<std::size_t>((faceSize + 2) / 2) + 1;
+    return 6 * static_cast<std::size_t>((faceSize + 2 + 3) / 4) *
+               static_cast<std::size_t>((faceSize + 2) / 2) +
+           1;
 }
 
 const PackedReferenceMap::Level& PackedReferenceMap::levelFor(int localFaceSize) const {

@@ -35,9 +35,10 @@ class PackedReferenceMap {
       public:
         Level(const ReferenceMap& map, float radianceScale);
         /// From bytes that `words` and `chroma` gave; their sizes must be those of this face size.
-        Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words, std::vector<std::uint16_t> chroma);
-        static std::size_t wordBytes(int faceSize);     ///< padding included
-        static std::size_t chromaCount(int faceSize);   ///< padding included
+        Level(int faceSize, float radianceScale, std::vector<std::uint8_t> words,
+              std::vector<std::uint16_t> chroma);
+        static std::size_t wordBytes(int faceSize);    ///< padding included
+        static std::size_t chromaCount(int faceSize);  ///< padding included
         int faceSize() const { return faceSize_; }
         const std::uint8_t* words() const { return words_.data(); }
         const std::uint16_t* chroma() const { return chroma_.data(); }

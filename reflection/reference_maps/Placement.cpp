@@ -27,7 +27,9 @@ std::vector<glm::vec3> sphereDirections(int count) {
 }
 
 std::uint64_t cubeKey(const glm::vec3& p, float size) {
-    const auto part = [size](float x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / size))) & 0x1fffff; };
+    const auto part = [size](float x) {
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / size))) & 0x1fffff;
+    };
     return part(p.x) | (part(p.y) << 21) | (part(p.z) << 42);
 }
 
@@ -72,7 +74,8 @@ std::vector<glm::vec3> visibleSurface(const GridTracer& tracer, std::span<const 
 }
 
 /// Samples that a map at `eye` sees: the ray towards the sample ends there.
-std::vector<std::uint32_t> seenFrom(const GridTracer& tracer, const glm::vec3& eye, std::span<const glm::vec3> surface, float range) {
+std::vector<std::uint32_t> seenFrom(const GridTracer& tracer, const glm::vec3& eye,
+                                    std::span<const glm::vec3> surface, float range) {
     std::vector<std::uint32_t> seen, asked;
     std::vector<float> dx, dy, dz;
     for (std::uint32_t i = 0; i < surface.size(); ++i) {
@@ -86,7 +89,8 @@ std::vector<std::uint32_t> seenFrom(const GridTracer& tracer, const glm::vec3& e
     std::vector<float> t(asked.size());
     tracer.traceFan(eye, dx, dy, dz, t);
     for (std::size_t k = 0; k < asked.size(); ++k) {
-        // A sample lies a millimetre before its surface; a grazing ray may enter the surface's own cell up to 5 cm early.
+        // A sample lies a millimetre before its surface; a grazing ray may enter the surface's own cell up to
+        // 5 cm early.
         const float length = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
         if (t[k] * length >= length - 0.05f) seen.push_back(asked[k]);
     }
@@ -112,11 +116,13 @@ Placement placeReferenceMaps(const GridTracer& tracer, std::span<const glm::vec3
         seen[i] = seenFrom(tracer, stands[i] + glm::vec3(0, 0, options.mapHeight), surface, options.range);
     });
 
-    // Lazy greedy: a candidate's gain only shrinks, so the top of the heap is right once its gain is up to date.
+    // Lazy greedy: a candidate's gain only shrinks, so the top of the heap is right once its gain is up to
+    // date.
     std::vector<char> covered(surface.size(), 0), chosen(stands.size(), 0);
     std::size_t coveredCount = 0;
     const auto gainOf = [&](std::size_t i) {
-        return static_cast<std::size_t>(std::count_if(seen[i].begin(), seen[i].end(), [&](std::uint32_t s) { return !covered[s]; }));
+        return static_cast<std::size_t>(
+            std::count_if(seen[i].begin(), seen[i].end(), [&](std::uint32_t s) { return !covered[s]; }));
     };
     const auto choose = [&](std::size_t i) {
         chosen[i] = 1;
@@ -126,14 +132,16 @@ Placement placeReferenceMaps(const GridTracer& tracer, std::span<const glm::vec3
         }
         result.positions.push_back(stands[i] + glm::vec3(0, 0, options.mapHeight));
     };
-    const auto byGainThenIndex = [](const std::pair<std::size_t, std::size_t>& a, const std::pair<std::size_t, std::size_t>& b) {
+    const auto byGainThenIndex = [](const std::pair<std::size_t, std::size_t>& a,
+                                    const std::pair<std::size_t, std::size_t>& b) {
         return a.first != b.first ? a.first < b.first : a.second > b.second;
     };
     std::priority_queue<std::pair<std::size_t, std::size_t>, std::vector<std::pair<std::size_t, std::size_t>>,
                         decltype(byGainThenIndex)>
         heap(byGainThenIndex);
     for (std::size_t i = 0; i < stands.size(); ++i) heap.emplace(seen[i].size(), i);
-    const auto enough = static_cast<std::size_t>(std::ceil(static_cast<double>(options.coverage) * static_cast<double>(surface.size())));
+    const auto enough = static_cast<std::size_t>(
+        std::ceil(static_cast<double>(options.coverage) * static_cast<double>(surface.size())));
     while (coveredCount < enough && !heap.empty()) {
         const auto [gain, i] = heap.top();
         heap.pop();
@@ -151,7 +159,8 @@ Placement placeReferenceMaps(const GridTracer& tracer, std::span<const glm::vec3
         std::vector<float> nearest(stands.size(), std::numeric_limits<float>::infinity());
         const auto account = [&](const glm::vec3& map) {
             for (std::size_t i = 0; i < stands.size(); ++i)
-                nearest[i] = std::min(nearest[i], glm::distance(stands[i] + glm::vec3(0, 0, options.mapHeight), map));
+                nearest[i] =
+                    std::min(nearest[i], glm::distance(stands[i] + glm::vec3(0, 0, options.mapHeight), map));
         };
         for (const glm::vec3& map : result.positions) account(map);
         for (;;) {
@@ -161,7 +170,8 @@ Placement placeReferenceMaps(const GridTracer& tracer, std::span<const glm::vec3
             account(result.positions.back());
         }
     }
-    if (!surface.empty()) result.coverage = static_cast<float>(coveredCount) / static_cast<float>(surface.size());
+    if (!surface.empty())
+        result.coverage = static_cast<float>(coveredCount) / static_cast<float>(surface.size());
     return result;
 }
 

@@ -8,8 +8,8 @@ namespace reflection {
 
 namespace {
 
-/// Samples within this ratio of the median count as one surface; a texel's samples on one plane differ by more only at
-/// less than about 2 degrees of grazing, where a texel is a smear anyway.
+/// Samples within this ratio of the median count as one surface; a texel's samples on one plane differ by
+/// more only at less than about 2 degrees of grazing, where a texel is a smear anyway.
 constexpr float sameSurface = 1.25f;
 
 }  // namespace
@@ -38,8 +38,10 @@ ReferenceMap halved(const ReferenceMap& map) {
     for (std::size_t row = 0; row < 6 * to; ++row) {
         for (std::size_t x = 0; x < to; ++x) {
             const std::size_t i = 2 * row * from + 2 * x;
-            std::array<float, 4> samples{map.distance[i], map.distance[i + 1], map.distance[i + from], map.distance[i + from + 1]};
-            half.colour[row * to + x] = 0.25f * (map.colour[i] + map.colour[i + 1] + map.colour[i + from] + map.colour[i + from + 1]);
+            std::array<float, 4> samples{map.distance[i], map.distance[i + 1], map.distance[i + from],
+                                         map.distance[i + from + 1]};
+            half.colour[row * to + x] =
+                0.25f * (map.colour[i] + map.colour[i + 1] + map.colour[i + from] + map.colour[i + from + 1]);
             half.distance[row * to + x] = representativeDistance(samples);
         }
     }

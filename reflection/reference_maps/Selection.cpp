@@ -8,7 +8,8 @@ namespace reflection {
 namespace {
 
 /// Candidates sorted by distance, at most `count`.
-std::vector<Candidate> nearest(std::span<const PackedReferenceMap> maps, const glm::dvec3& centre, std::size_t count) {
+std::vector<Candidate> nearest(std::span<const PackedReferenceMap> maps, const glm::dvec3& centre,
+                               std::size_t count) {
     std::vector<Candidate> all;
     all.reserve(maps.size());
     for (const PackedReferenceMap& map : maps) all.push_back({&map, glm::vec3(map.position() - centre)});
@@ -26,7 +27,8 @@ std::vector<Candidate> nearest(std::span<const PackedReferenceMap> maps, const g
 
 std::vector<Candidate> selectCandidates(std::span<const PackedReferenceMap> maps, const glm::dvec3& centre,
                                         const GridTracer& tracer, std::size_t count) {
-    // Three times as many as wanted are looked at: around a corner about every second near map stands in another street.
+    // Three times as many as wanted are looked at: around a corner about every second near map stands in
+    // another street.
     std::vector<Candidate> near = nearest(maps, centre, 3 * count);
     std::stable_partition(near.begin(), near.end(), [&](const Candidate& c) {
         const TraceResult hit = tracer.trace({glm::vec3(centre), c.offset});

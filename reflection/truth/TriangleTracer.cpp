@@ -15,7 +15,8 @@ struct TriangleTracer::Impl {
 
 TriangleTracer::TriangleTracer() : impl_(std::make_unique<Impl>()) {
     impl_->device = rtcNewDevice(nullptr);
-    if (!impl_->device) throw std::runtime_error("Embree could not start: this processor lacks SSE2 or memory ran out");
+    if (!impl_->device)
+        throw std::runtime_error("Embree could not start: this processor lacks SSE2 or memory ran out");
     impl_->scene = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
 }
@@ -28,23 +29,26 @@ TriangleTracer::~TriangleTracer() {
 void TriangleTracer::add(const city::Mesh& mesh, const glm::mat4& worldFromMesh) {
     if (mesh.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                  3 * sizeof(float), mesh.vertices.size()));
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
     for (const city::Vertex& v : mesh.vertices) {
         const glm::vec3 p(worldFromMesh * glm::vec4(v.position, 1));
         *positions++ = p.x;
         *positions++ = p.y;
         *positions++ = p.z;
     }
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                        3 * sizeof(std::uint32_t), mesh.triangleCount()));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), mesh.triangleCount()));
     std::copy_n(mesh.indices.begin(), 3 * mesh.triangleCount(), indices);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene, geometry);
     rtcReleaseGeometry(geometry);
 }
 
-void TriangleTracer::commit() { rtcCommitScene(impl_->scene); }
+void TriangleTracer::commit() {
+    rtcCommitScene(impl_->scene);
+}
 
 void TriangleTracer::traceFan(const glm::vec3& origin, std::span<const float> dx, std::span<const float> dy,
                               std::span<const float> dz, std::span<float> t) const {
@@ -76,7 +80,9 @@ void TriangleTracer::traceFan(const glm::vec3& origin, std::span<const float> dx
         }
         rtcIntersect16(valid, impl_->scene, &context, &rays);
         for (std::size_t i = 0; i < count; ++i)
-            t[first + i] = rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : rays.ray.tfar[i];
+            t[first + i] = rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                               ? std::numeric_limits<float>::infinity()
+                               : rays.ray.tfar[i];
     }
 }
 

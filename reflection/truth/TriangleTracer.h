@@ -10,8 +10,8 @@
 
 namespace reflection {
 
-/// Exact rays against triangles (Embree 3, robust mode): the rival of the local maps and the source of truth. Build once: add
-/// meshes, then `commit`.
+/// Exact rays against triangles (Embree 3, robust mode): the rival of the local maps and the source of truth.
+/// Build once: add meshes, then `commit`.
 class TriangleTracer {
   public:
     TriangleTracer();
@@ -21,9 +21,10 @@ class TriangleTracer {
     void add(const city::Mesh& mesh, const glm::mat4& worldFromMesh = glm::mat4(1));
     void commit();
 
-    /// Ray parameter of the first hit for each direction from one origin, +infinity for none; in packets of sixteen.
-    void traceFan(const glm::vec3& origin, std::span<const float> dx, std::span<const float> dy, std::span<const float> dz,
-                  std::span<float> t) const;
+    /// Ray parameter of the first hit for each direction from one origin, +infinity for none; in packets of
+    /// sixteen.
+    void traceFan(const glm::vec3& origin, std::span<const float> dx, std::span<const float> dy,
+                  std::span<const float> dz, std::span<float> t) const;
 
   private:
     struct Impl;

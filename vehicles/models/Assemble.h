@@ -35,7 +35,8 @@ struct Assembly {
     WheelShape wheel;
     std::vector<float> axles;       ///< x, the first one steers
     std::size_t triangles = 11000;  ///< at least, of the finest body's shell
-    float tolerance = 0.0006f;  ///< metres by which the shell may be simplified; more shows as facets in reflections
+    float tolerance =
+        0.0006f;  ///< metres by which the shell may be simplified; more shows as facets in reflections
     bool allSteer = false, noneSteer = false;
 };
 VehicleModel assemble(const Assembly& plan, Shell half, const city::Mesh& parts, const city::Mesh& oneSided,

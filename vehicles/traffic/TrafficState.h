@@ -43,11 +43,11 @@ struct Vehicle {
     std::uint32_t current = 0;  ///< index into path of the way under the front
 
     std::vector<ZoneHold> holds;
-    double granted = 0;       ///< all zones that begin before this are held
-    double nextStop = 0;      ///< where it must stop unless more is granted
-    bool stopIsPlan = false;  ///< nothing stops it there: only the plan ends
-    double stood = 0;         ///< seconds without motion
-    double waited = 0;        ///< seconds in front of a stop
+    double granted = 0;               ///< all zones that begin before this are held
+    double nextStop = 0;              ///< where it must stop unless more is granted
+    bool stopIsPlan = false;          ///< nothing stops it there: only the plan ends
+    double stood = 0;                 ///< seconds without motion
+    double waited = 0;                ///< seconds in front of a stop
     Refusal refusal = Refusal::none;  ///< why it was not granted more the last time
 
     // A lane change: until `changeEnd` the vehicle counts in both lanes.
