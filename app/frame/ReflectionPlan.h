@@ -39,7 +39,7 @@ struct ReflectionPlan {
 
 struct PlanOptions {
     std::uint64_t texelBudget =
-        150'000;                  ///< texels built a frame; at least one map is built whatever it costs
+        80'000;                   ///< texels built a frame; at least one map is built whatever it costs
     float texelsPerPixel = 0.5f;  ///< face size wanted for each pixel of the vehicle's projected diameter
     float errorThreshold = 0.5f;  ///< pixels of shift of a reflected feature that are let stand
     bool everyFrame = false;      ///< rebuild all visible maps every frame (measuring; the paper's way)
