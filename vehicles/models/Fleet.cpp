@@ -22,7 +22,7 @@ std::vector<VehicleKind> kindsOf(const std::vector<VehicleModel>& models) {
         const char* name;
         float acceleration, deceleration, share;
     };
-    // Comfortable rates: cars after Treiber & Kesting, Traffic Flow Dynamics, table 11.2; standing passengers
+    // Comfortable rates: cars at what city drivers take without haste; standing passengers
     // ask for less.
     static constexpr Known known[] = {{"hatchback", 1.7f, 2.2f, 5},
                                       {"saloon", 1.6f, 2.2f, 4},
