@@ -6,6 +6,7 @@
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/display/OffscreenContext.h"
+#include "app/frame/AssembleFrame.h"
 #include "app/render/SceneRenderer.h"
 #include "app/report/Table.h"
 
@@ -17,10 +18,7 @@ int run(const Options& options) {
     const OffscreenContext context;
     const Scene scene = loadScene(options);
     SceneRenderer renderer(scene.city, scene.models, {});
-    FrameScene empty;
-    empty.lighting = scene.lighting;
-    empty.signalColours.assign(scene.city.signalHeads.size(), vehicles::SignalColour::red);
-    renderer.prepare(empty);
+    renderer.prepare(emptyFrame(scene.city, scene.lighting));
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;

@@ -7,6 +7,7 @@
 #include "app/commands/LocalMapBench.h"
 #include "app/commands/Version.h"
 #include "app/display/OffscreenContext.h"
+#include "app/frame/AssembleFrame.h"
 #include "app/render/SceneRenderer.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
@@ -18,10 +19,7 @@ int benchLocalMap(const Options& options) {
     const OffscreenContext context;
     const Scene scene = loadScene(options);
     SceneRenderer renderer(scene.city, scene.models, {});
-    FrameScene empty;
-    empty.lighting = scene.lighting;
-    empty.signalColours.assign(scene.city.signalHeads.size(), vehicles::SignalColour::red);
-    renderer.prepare(empty);
+    renderer.prepare(emptyFrame(scene.city, scene.lighting));
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;

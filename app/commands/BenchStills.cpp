@@ -85,10 +85,7 @@ int benchStills(const Options& options) {
     RenderOptions rendering;
     rendering.antialiasing = Antialiasing::msaa4;
     SceneRenderer renderer(scene.city, scene.models, rendering);
-    FrameScene empty;
-    empty.lighting = scene.lighting;
-    empty.signalColours.assign(scene.city.signalHeads.size(), vehicles::SignalColour::red);
-    renderer.prepare(empty);
+    renderer.prepare(emptyFrame(scene.city, scene.lighting));
     PreparationOptions preparation;
     preparation.cell = static_cast<float>(options.cell);
     preparation.quiet = options.quiet;

@@ -20,4 +20,11 @@ FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& t
     return scene;
 }
 
+FrameScene emptyFrame(const city::CityModel& city, const Lighting& lighting) {
+    FrameScene frame;
+    frame.lighting = lighting;
+    frame.signalColours.assign(city.signalHeads.size(), vehicles::SignalColour::red);
+    return frame;
+}
+
 }  // namespace app

@@ -10,4 +10,7 @@ namespace app {
 FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& traffic,
                          const Lighting& lighting, std::vector<View> views);
 
+/// The standing city alone under a light: no vehicles, all signals red. What reference maps are drawn from.
+FrameScene emptyFrame(const city::CityModel& city, const Lighting& lighting);
+
 }  // namespace app

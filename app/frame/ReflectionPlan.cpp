@@ -132,7 +132,6 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         }
         job.slot = map.slot;
         map.centre = job.centre;
-        map.heading = scene.vehicles[job.vehicle].heading;
         map.neighbourMotion = 0;
         map.built = true;
         plan.texels += texelsOf(job.slot);

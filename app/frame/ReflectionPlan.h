@@ -67,7 +67,6 @@ class ReflectionPlanner {
     struct Held {
         reflection::LocalMapSlot slot;
         glm::dvec3 centre{0};
-        double heading = 0;
         double neighbourMotion =
             0;  ///< metres that neighbours moved since the map was built, weighted by nearness
         std::uint64_t lastSeen = 0;
