@@ -3,11 +3,7 @@
 #include <iostream>
 
 #include "app/commands/Commands.h"
-#include "app/commands/LoadScene.h"
-#include "app/commands/PreparedReflections.h"
-#include "app/display/OffscreenContext.h"
-#include "app/frame/AssembleFrame.h"
-#include "app/render/SceneRenderer.h"
+#include "app/commands/PreparedScene.h"
 #include "app/report/Table.h"
 
 namespace app {
@@ -15,17 +11,8 @@ namespace app {
 namespace {
 
 int run(const Options& options) {
-    const OffscreenContext context;
-    const Scene scene = loadScene(options);
-    SceneRenderer renderer(scene.city, scene.models, {});
-    renderer.prepare(emptyFrame(scene.city, scene.lighting));
-    PreparationOptions preparation;
-    preparation.cell = static_cast<float>(options.cell);
-    preparation.quiet = options.quiet;
-    preparation.cacheIsPurpose = true;
-    const PreparedReflections prepared =
-        prepareReflections(scene.city, scene.lighting, renderer, preparation);
-
+    const PreparedScene stage(options, {}, true);
+    const PreparedReflections& prepared = stage.reflections;
     if (!prepared.complete) {
         spdlog::warn(
             "interrupted: the maps that are finished stay in the cache; run bake again for the rest");

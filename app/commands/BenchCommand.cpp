@@ -1,7 +1,12 @@
+#include <spdlog/spdlog.h>
+
+#include <iostream>
 #include <stdexcept>
 
 #include "app/commands/Benches.h"
 #include "app/commands/Commands.h"
+#include "app/report/Progress.h"
+#include "app/report/Table.h"
 
 namespace app {
 
@@ -10,23 +15,41 @@ namespace {
 std::vector<Bench> allBenches() {
     return {
         {{"cars",
-          "frame time and error against the number of mirroring cars, every method on the same frames"},
+          "frame time and error against the number of mirroring cars, every method on the same frames",
+          trafficOptions | severalCars | qualityOption | cellOption | pictureOptions | durationOptions},
          benchCars},
-        {{"localmap", "one local map by every method, against re-rendering its six faces"}, benchLocalMap},
-        {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out"}, benchStills},
-        {{"tracer", "rays per second against heightfields, with an exact check; beside Embree"},
+        {{"localmap", "one local map by every method, against re-rendering its six faces", mapOptions},
+         benchLocalMap},
+        {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
+          trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},
+         benchStills},
+        {{"tracer", "rays per second against heightfields, with an exact check; beside Embree", cellOption},
          benchTracer}};
 }
 
 }  // namespace
+
+int reportBench(const Options& options, const ResultFile& results,
+                const std::vector<std::vector<std::string>>& table) {
+    const bool measured = table.size() > 1;
+    if (measured) std::cout << formatTable(table);
+    if (options.json) results.write(*options.json, interrupted());
+    if (!interrupted()) {
+        if (!measured) spdlog::error("nothing was measured");
+        return measured ? exitOk : exitFailed;
+    }
+    spdlog::warn(measured ? "interrupted: what was measured until then is kept"
+                          : "interrupted before anything was measured: what is finished of the city's "
+                            "preparation is kept");
+    return exitFailed;
+}
 
 Command benchCommand() {
     std::vector<BenchName> names;
     for (const Bench& bench : allBenches()) names.push_back(bench.name);
     return {.name = "bench",
             .summary = "measurements, as a table and as --json",
-            .groups = cityOptions | trafficOptions | reflectionOptions | pictureOptions | durationOptions |
-                      jsonOptions | outOptions,
+            .groups = cityOptions | jsonOptions,
             .benches = names,
             .run = [](const Options& options) {
                 for (const Bench& bench : allBenches())

@@ -1,42 +1,23 @@
-#include <spdlog/spdlog.h>
-
-#include <iostream>
-
 #include "app/commands/Benches.h"
-#include "app/commands/LoadScene.h"
 #include "app/commands/LocalMapBench.h"
+#include "app/commands/PreparedScene.h"
 #include "app/commands/Version.h"
-#include "app/display/OffscreenContext.h"
-#include "app/frame/AssembleFrame.h"
-#include "app/render/SceneRenderer.h"
-#include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
 
 namespace app {
 
 int benchLocalMap(const Options& options) {
-    const OffscreenContext context;
-    const Scene scene = loadScene(options);
-    SceneRenderer renderer(scene.city, scene.models, {});
-    renderer.prepare(emptyFrame(scene.city, scene.lighting));
-    PreparationOptions preparation;
-    preparation.cell = static_cast<float>(options.cell);
-    preparation.quiet = options.quiet;
-    const PreparedReflections prepared =
-        prepareReflections(scene.city, scene.lighting, renderer, preparation);
-    ResultFile results("localmap", std::string(programVersion), context.renderer());
-    if (!prepared.complete) {
-        spdlog::warn(
-            "interrupted before anything was measured: the reference maps that are finished are kept");
-        if (options.json) results.write(*options.json, true);
-        return exitFailed;
-    }
+    PreparedScene stage(options);
+    ResultFile results("localmap", std::string(programVersion), stage.context.renderer());
+    if (!stage.reflections.complete) return reportBench(options, results, {});
 
     LocalMapBenchOptions settings;
     settings.seed = options.seed;
-    settings.lighting = scene.lighting;
-    const std::vector<LocalMapRow> rows = runLocalMapBench(scene.city, prepared, renderer, settings);
+    settings.quiet = options.quiet;
+    settings.lighting = stage.scene.lighting;
+    const std::vector<LocalMapRow> rows =
+        runLocalMapBench(stage.scene.city, stage.reflections, stage.renderer, settings);
 
     std::vector<std::vector<std::string>> table{
         {"method", "ms", "of rerender", "PSNR dB", "worst", "to 4x4", "FLIP", "rays"}};
@@ -55,10 +36,7 @@ int benchLocalMap(const Options& options) {
                          fixed(row.psnr, 1), fixed(row.psnrWorst, 1), fixed(row.psnrSupersampled, 1),
                          fixed(row.flip, 3), row.rays > 0 ? std::to_string(row.rays) : "-"});
     }
-    std::cout << formatTable(table);
-    if (options.json) results.write(*options.json, interrupted());
-    if (interrupted()) spdlog::warn("interrupted: what was measured until then is kept");
-    return interrupted() ? exitFailed : exitOk;
+    return reportBench(options, results, table);
 }
 
 }  // namespace app

@@ -4,17 +4,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
-#include <iostream>
 #include <limits>
 
 #include "app/commands/Benches.h"
-#include "app/commands/LoadScene.h"
 #include "app/commands/MirrorMask.h"
-#include "app/commands/PreparedReflections.h"
+#include "app/commands/PreparedScene.h"
 #include "app/commands/Version.h"
-#include "app/display/OffscreenContext.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ReflectionEngine.h"
+#include "app/report/AsideFile.h"
 #include "app/report/Picture.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
@@ -77,27 +75,31 @@ Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, do
     return best;
 }
 
+/// What the pictures of a city are called: its name, or its file's up to the first dot.
+std::string pictureName(const std::string& city) {
+    const std::string file = std::filesystem::path(city).filename().string();
+    const std::size_t dot = file.find('.', 1);
+    return file.substr(0, dot);
+}
+
 }  // namespace
 
 int benchStills(const Options& options) {
-    const OffscreenContext context;
-    const Scene scene = loadScene(options);
+    const std::string name = pictureName(options.city);
+    requireWritable(options.out / (name + ".png"));
     RenderOptions rendering;
     rendering.antialiasing = Antialiasing::msaa4;
-    SceneRenderer renderer(scene.city, scene.models, rendering);
-    renderer.prepare(emptyFrame(scene.city, scene.lighting));
-    PreparationOptions preparation;
-    preparation.cell = static_cast<float>(options.cell);
-    preparation.quiet = options.quiet;
-    const PreparedReflections prepared =
-        prepareReflections(scene.city, scene.lighting, renderer, preparation);
-    if (!prepared.complete) return exitFailed;
+    PreparedScene stage(options, rendering);
+    const Scene& scene = stage.scene;
+    SceneRenderer& renderer = stage.renderer;
+    const PreparedReflections& prepared = stage.reflections;
+    ResultFile results("stills", std::string(programVersion), stage.context.renderer());
+    std::vector<std::vector<std::string>> table{{"picture", "PSNR dB", "FLIP"}};
+    if (!prepared.complete) return reportBench(options, results, table);
 
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
     const OffscreenTarget target(options.resolution);
     MirrorMask mirrors;
-    ResultFile results("stills", std::string(programVersion), context.renderer());
-    std::vector<std::vector<std::string>> table{{"picture", "PSNR dB", "FLIP"}};
     const std::vector<std::pair<std::string, ReflectionMethod>> methods{
         {"rerender", ReflectionMethod::rerender},
         {"none", ReflectionMethod::none},
@@ -117,8 +119,8 @@ int benchStills(const Options& options) {
         for (const auto& v : renderer.visibleVehicles(shot.view)) seen.push_back({v.index, v.diameterPixels});
         const std::vector<unsigned char> mask = mirrors.of(renderer, frame, target);
         std::vector<glm::vec3> truth;
-        for (const auto& [name, method] : methods) {
-            if (interrupted()) return exitFailed;
+        for (const auto& [methodName, method] : methods) {
+            if (interrupted()) return reportBench(options, results, table);
             ReflectionSettings settings;
             settings.method = method;
             settings.variant = options.mem;
@@ -129,15 +131,14 @@ int benchStills(const Options& options) {
             const ReflectionPlan& plan = engine.update(frame, seen, renderer);
             renderer.drawView(shot.view, {engine.textures(), plan.slots}, target.framebuffer());
             const Image8 image = readPixels(target.framebuffer(), target.size());
-            const std::string file = options.city + "_" + std::to_string(distance) + "m_" + name + ".png";
-            writePng({image.size.x, image.size.y, image.rgba},
-                     options.out / std::filesystem::path(file).filename());
+            const std::string file = name + "_" + std::to_string(distance) + "m_" + methodName + ".png";
+            writePng({image.size.x, image.size.y, image.rgba}, options.out / file);
             const std::vector<glm::vec3> pixels = toFloat(image);
             if (method == ReflectionMethod::rerender) truth = pixels;
             const int w = image.size.x, h = image.size.y;
             const double psnr = reflection::psnr({w, h, pixels}, {w, h, truth}, mask);
             const double flip = reflection::meanError(reflection::flip({w, h, pixels}, {w, h, truth}), mask);
-            results.add({{"method", name},
+            results.add({{"method", methodName},
                          {"city", options.city},
                          {"distance_m", distance},
                          {"psnr_db", psnr},
@@ -145,9 +146,7 @@ int benchStills(const Options& options) {
             table.push_back({file, fixed(psnr, 1), fixed(flip, 4)});
         }
     }
-    std::cout << formatTable(table);
-    if (options.json) results.write(*options.json, false);
-    return exitOk;
+    return reportBench(options, results, table);
 }
 
 }  // namespace app

@@ -1,7 +1,3 @@
-#include <spdlog/spdlog.h>
-
-#include <iostream>
-
 #include "app/commands/Benches.h"
 #include "app/commands/LoadScene.h"
 #include "app/commands/TracerBench.h"
@@ -43,10 +39,7 @@ int benchTracer(const Options& options) {
                          row.contains("checked") ? row["checked"].dump() : "",
                          row.contains("disagreements") ? row["disagreements"].dump() : ""});
     }
-    std::cout << formatTable(table);
-    if (options.json) results.write(*options.json, interrupted());
-    if (interrupted()) spdlog::warn("interrupted: what was measured until then is kept");
-    return interrupted() ? exitFailed : exitOk;
+    return reportBench(options, results, table);
 }
 
 }  // namespace app

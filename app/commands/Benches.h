@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "app/commands/Options.h"
+#include "app/report/ResultFile.h"
 
 namespace app {
 
@@ -13,6 +15,11 @@ struct Bench {
     BenchName name;
     std::function<int(const Options&)> run;
 };
+
+/// The end of every measurement: prints the table (its first row is the head), writes `--json`, marked as
+/// partial after an interrupt, says so, and returns the exit code: failed too where nothing was measured.
+int reportBench(const Options& options, const ResultFile& results,
+                const std::vector<std::vector<std::string>>& table);
 
 int benchCars(const Options& options);
 int benchStills(const Options& options);

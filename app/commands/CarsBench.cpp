@@ -219,7 +219,9 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             }
             row.reflection = timingOf(extra);
             row.ratioToNone = timingOf(ratio).median;
-            row.rerenderRatio = timingOf(against).median;
+            // What costs nothing has no share of re-rendering's cost.
+            if (method.engine->settings().method != ReflectionMethod::none)
+                row.rerenderRatio = timingOf(against).median;
             row.psnr = method.psnrSum / method.compared;
             row.flip = method.flipSum / method.compared;
             row.mapsPerFrame = method.maps / method.compared;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,12 +26,13 @@ struct CarsBenchOptions {
 
 struct CarsRow {
     std::string method;
-    std::uint32_t cars = 0;     ///< asked for
-    std::uint32_t visible = 0;  ///< on screen, each with a map of its own (but `none` and `static`)
-    Timing frame;               ///< whole frame, until OpenGL had finished
-    Timing reflection;          ///< frame minus the same frame of `none`
-    double ratioToNone = 0;     ///< median over frames
-    double rerenderRatio = 0;   ///< reflection time of re-rendering over this one's, median over frames
+    std::uint32_t cars = 0;      ///< asked for
+    std::uint32_t visible = 0;   ///< on screen, each with a map of its own (but `none` and `static`)
+    Timing frame;                ///< whole frame, until OpenGL had finished
+    Timing reflection;           ///< frame minus the same frame of `none`
+    double ratioToNone = 0;      ///< median over frames
+    double rerenderRatio = NAN;  ///< reflection time of re-rendering over this one's, median over frames; not
+                                 ///< a number for `none`
     double psnr = 0,
            flip = 0;  ///< over the cars' mirroring pixels, against re-rendering every car every frame
     double mapsPerFrame = 0;

@@ -151,7 +151,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     std::vector<Sums> sums(methods.size());
     std::vector<double> rerenderTimes, embreeTimes, embreeRatios;
     double rerenderSquaredFine = 0;
-    Progress progress("places", places.size());
+    Progress progress("places", places.size(), options.quiet);
     std::size_t done = 0;
     for (const Place& place : places) {
         if (interrupted()) break;

@@ -18,6 +18,7 @@ struct LocalMapBenchOptions {
     std::uint64_t seed = 1;
     float centreHeight = 0.8f;  ///< of the maps above the road, metres
     Lighting lighting;
+    bool quiet = false;
 };
 
 struct LocalMapRow {

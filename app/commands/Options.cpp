@@ -89,26 +89,70 @@ void parseResolution(const std::string& text, glm::ivec2& target) {
             "--resolution", "'" + text + "' is not WIDTHxHEIGHT with both from 16 to 16384, like 1280x720");
 }
 
-void addTraffic(CLI::App& parser, Options& o, bool many) {
-    auto* cars =
-        parser
-            .add_option("--cars", o.cars,
-                        many ? "numbers of cars, separated by commas (each measurement has its own default)"
-                             : "number of cars (default 60)")
-            ->delimiter(',')
-            ->type_name("N")
-            ->check(wholeBetween(0, 100000));
-    if (!many) cars->expected(1);
+/// A name of a file or folder: not empty, and not the next option, which was meant as one.
+CLI::Validator isPath() {
+    return CLI::Validator(
+        [](const std::string& text) -> std::string {
+            if (text.empty()) return "the name is empty";
+            if (text.front() == '-')
+                return "'" + text + "' looks like an option; write './" + text + "' if it is a name";
+            return {};
+        },
+        "");
 }
 
-void addGroups(CLI::App& parser, Options& o, const Command& command) {
-    const unsigned groups = command.groups;
+/// A file that will be written over: its name must say that it is one of ours, never a city to be read.
+CLI::Validator isGlb(const std::string& remedy) {
+    return CLI::Validator(
+        [remedy](const std::string& text) -> std::string {
+            std::string extension = std::filesystem::path(text).extension().string();
+            for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+            if (extension == ".glb") return {};
+            return "names the file to write, which ends in .glb, not '" + text + "'; " + remedy;
+        },
+        "");
+}
+
+void addTraffic(CLI::App& parser, Options& o, unsigned groups) {
+    if (groups & severalCars)
+        parser
+            .add_option("--cars", o.cars,
+                        "numbers of cars, separated by commas (default: the measurement's own)")
+            ->delimiter(',')
+            ->type_name("N")
+            ->check(wholeBetween(1, 100000));
+    else
+        parser.add_option("--cars", o.cars, "number of cars (default 60)")
+            ->delimiter(',')
+            ->type_name("N")
+            ->check(wholeBetween(0, 100000))
+            ->expected(1);
+    parser
+        .add_option(groups & exportOptions ? "--body" : "--car", o.car,
+                    "body for all cars: a binary glTF file")
+        ->type_name("FILE.glb")
+        ->check(isPath() & CLI::ExistingFile);
+    parser.add_option("--car-length", o.carLength, "length to which the body is scaled, 0.5 to 60")
+        ->type_name("METRES")
+        ->capture_default_str()
+        ->check(between(0.5, 60, "metres"));
+}
+
+/// What the command line said and `Options` has no place for.
+struct Spellings {
+    std::optional<std::string> city;        ///< CITY
+    std::optional<std::string> cityByName;  ///< --city
+};
+
+void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command& command, unsigned groups) {
     if (!command.benches.empty()) parser.add_option("NAME", o.bench, "the measurement")->required();
     if (groups & cityOptions) {
-        parser.add_option("CITY", o.city,
+        parser.add_option("CITY", spellings.city,
                           groups & cityIsOptional
                               ? "boulevard, paper, or a file (.osm, .osm.pbf, ...)"
                               : "boulevard (default), paper, or a file (.osm, .osm.pbf, ...)");
+        if (!(groups & exportOptions))
+            parser.add_option("--city", spellings.cityByName, "another way to write CITY")->type_name("CITY");
         parser.add_option("--seed", o.seed, "of everything that is drawn at random")
             ->type_name("N")
             ->capture_default_str()
@@ -116,52 +160,35 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
         parser
             .add_option("--size", o.size,
                         "side of boulevard (200 to 2000, default 600), or of the square that is cut from a "
-                        "file (default: all of it)")
+                        "file (100 to 20000, default: all of it)")
             ->type_name("METRES")
             ->check(between(100, 20000, "metres"));
     }
-    if (groups & trafficOptions) {
-        addTraffic(parser, o, !command.benches.empty());
-        const std::string length = "length to which the body is scaled, 0.5 to 60";
-        if (!(groups & exportOptions))
-            parser.add_option("--car", o.car, "body for all cars: a binary glTF file")
-                ->type_name("FILE.glb")
-                ->check(CLI::ExistingFile);
-        else
-            parser.add_option("--body", o.car, "body for all cars: a binary glTF file")
-                ->type_name("FILE.glb")
-                ->check(CLI::ExistingFile);
-        parser.add_option("--car-length", o.carLength, length)
-            ->type_name("METRES")
-            ->capture_default_str()
-            ->check(between(0.5, 60, "metres"));
-    }
-    if (groups & reflectionOptions) {
+    if (groups & trafficOptions) addTraffic(parser, o, groups);
+    if (groups & methodOption)
         addNamed(parser, "--method", o.method, reflectionMethodNames,
                  "how vehicles get their reflections (default mem)");
+    if (groups & memOption)
         addNamed(parser, "--mem", o.mem, memVariantNames, "form of the method mem (default ours)");
+    if (groups & qualityOption)
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
-    }
-    if (groups & (reflectionOptions | mapOptions)) {
+    if (groups & cellOption)
         parser.add_option("--cell", o.cell, "side of a heightfield cell, 0.1 to 50")
             ->type_name("METRES")
             ->capture_default_str()
             ->check(between(0.1, 50, "metres"));
-    }
-    if (groups & (pictureOptions | mapOptions)) {
+    if (groups & timeOption)
         parser.add_option("--time", o.hour, "hour of the day, 0 to 24")
             ->type_name("HOUR")
             ->capture_default_str()
             ->check(between(0, 24, "hours"));
-    }
-    if (groups & pictureOptions) {
+    if (groups & resolutionOption)
         parser
             .add_option_function<std::string>(
                 "--resolution", [&o](const std::string& text) { parseResolution(text, o.resolution); },
                 "of pictures (default 1280x720)")
             ->type_name("WxH");
-    }
     if (groups & durationOptions) {
         auto* seconds = parser.add_option("--seconds", o.seconds, "length of the drive")
                             ->type_name("S")
@@ -180,9 +207,12 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
             .add_option("--out", o.out,
                         "folder for pictures and video (screenshots, where there is a window)")
             ->type_name("DIR")
+            ->check(isPath())
             ->capture_default_str();
     if (groups & jsonOptions)
-        parser.add_option("--json", o.json, "write the results to this file")->type_name("FILE");
+        parser.add_option("--json", o.json, "write the results to this file")
+            ->type_name("FILE")
+            ->check(isPath());
     if (groups & displayOptions) {
         parser.add_flag("--offscreen", o.offscreen, "no window, even where there is a display");
         addNamed(parser, "--camera", o.camera, cameraModeNames,
@@ -193,11 +223,15 @@ void addGroups(CLI::App& parser, Options& o, const Command& command) {
             ->check(wholeBetween(0, 10000));
     }
     if (groups & exportOptions) {
-        parser.add_option("--city", o.exportCity, "write the city to this file")->type_name("FILE.glb");
+        parser.add_option("--city", o.exportCity, "write the city to this file")
+            ->type_name("FILE.glb")
+            ->check(isPath() & isGlb("the city itself is CITY, without --city"));
         parser.add_option("--car", o.exportCar, "write the first vehicle model to this file")
-            ->type_name("FILE.glb");
+            ->type_name("FILE.glb")
+            ->check(isPath() & isGlb("a body to be read is --body"));
         parser.add_option("--drive", o.exportDrive, "write camera and cars, frame by frame, to this file")
-            ->type_name("FILE.json");
+            ->type_name("FILE.json")
+            ->check(isPath());
     }
     parser.add_flag("-q,--quiet", o.quiet, "no progress, no remarks: results, warnings and errors alone");
 }
@@ -218,6 +252,56 @@ int complain(const Command& command, const std::string& message,
     return exitUsage;
 }
 
+/// The measurements, for the help.
+std::string benchList(const Command& command) {
+    std::string list = "Measurements, each with options of its own (bench NAME --help):\n";
+    for (const BenchName& bench : command.benches)
+        list += "  " + bench.name + std::string(bench.name.size() < 12 ? 12 - bench.name.size() : 1, ' ') +
+                bench.summary + "\n";
+    return list;
+}
+
+/// Whether some measurement of the command has this option.
+bool someBenchTakes(const Command& command, const std::string& option) {
+    unsigned all = command.groups;
+    for (const BenchName& bench : command.benches) all |= bench.groups;
+    Options ignored;
+    Spellings spellings;
+    CLI::App parser;
+    addGroups(parser, ignored, spellings, command, all);
+    const std::vector<std::string> names = optionNames(parser);
+    return std::find(names.begin(), names.end(), option) != names.end();
+}
+
+/// Brings both spellings of the city together and looks whether there is such a city, of that size. The exit
+/// code of bad usage, which it has explained.
+std::optional<int> settleCity(const Command& command, unsigned groups, const Spellings& spellings,
+                              Options& options) {
+    if (!(groups & cityOptions)) return std::nullopt;
+    if (spellings.city && spellings.cityByName && *spellings.city != *spellings.cityByName)
+        return complain(command, "two cities are named: '" + *spellings.city + "' and --city '" +
+                                     *spellings.cityByName + "'");
+    if (const auto& city = spellings.city ? spellings.city : spellings.cityByName) {
+        if (city->empty()) return complain(command, "the city's name is empty");
+        options.city = *city;
+    }
+    const bool builtIn = options.city == "boulevard" || options.city == "paper";
+    std::error_code ignored;
+    if (!builtIn && !options.city.empty() && !std::filesystem::is_regular_file(options.city, ignored)) {
+        const std::vector<std::string> names{"boulevard", "paper"};
+        return complain(
+            command, "there is no city and no file named '" + options.city + "' (built in: boulevard, paper)",
+            suggestion(options.city, names));
+    }
+    if (options.city == "boulevard" && options.size && (*options.size < 200 || *options.size > 2000)) {
+        std::ostringstream size;
+        size << *options.size;
+        return complain(command,
+                        "--size: " + size.str() + " is outside 200 to 2000 metres, the sizes of boulevard");
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::uint32_t> Options::frameCount() const {
@@ -227,19 +311,25 @@ std::optional<std::uint32_t> Options::frameCount() const {
 }
 
 ParseOutcome parseOptions(const Command& command, std::span<const std::string> arguments) {
+    // Options of measurements are those of the one that is named; it may stand behind some of them.
+    const BenchName* bench = nullptr;
+    for (const std::string& argument : arguments)
+        for (const BenchName& known : command.benches)
+            if (bench == nullptr && argument == known.name) bench = &known;
+    const unsigned groups = command.groups | (bench != nullptr ? bench->groups : 0u);
+
     Options options;
-    if (command.groups & cityIsOptional) options.city.clear();
+    Spellings spellings;
+    if (groups & cityIsOptional) options.city.clear();
+    if (groups & severalCars) options.cars.clear();
     CLI::App parser(command.summary, "mirrorstreet " + command.name);
     parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-    addGroups(parser, options, command);
-    if (!command.benches.empty()) {
-        std::string list = "Measurements:\n";
-        for (const BenchName& bench : command.benches)
-            list += "  " + bench.name +
-                    std::string(bench.name.size() < 12 ? 12 - bench.name.size() : 1, ' ') + bench.summary +
-                    "\n";
-        parser.footer(list);
-    }
+    addGroups(parser, options, spellings, command, groups);
+    if (!command.benches.empty()) parser.footer(benchList(command));
+    // CLI11 takes the next argument for a value that is missing behind '='.
+    for (const std::string& argument : arguments)
+        if (argument.size() > 3 && argument.starts_with("--") && argument.find('=') + 1 == argument.size())
+            return complain(command, argument + " has no value behind the '='");
     try {
         parser.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
@@ -248,29 +338,20 @@ ParseOutcome parseOptions(const Command& command, std::span<const std::string> a
     } catch (const CLI::ExtrasError&) {
         const std::vector<std::string> left = parser.remaining();
         const std::string word = left.empty() ? "" : left.front().substr(0, left.front().find('='));
+        if (bench != nullptr && someBenchTakes(command, word))
+            return complain(command, "the measurement '" + bench->name + "' does not depend on " + word);
         const std::string what = word.starts_with('-') ? "unknown option '" : "unexpected argument '";
         return complain(command, what + word + "'", suggestion(word, optionNames(parser)));
     } catch (const CLI::ParseError& error) {
         return complain(command, error.what());
     }
-    if (!command.benches.empty()) {
+    if (!command.benches.empty() && (bench == nullptr || bench->name != options.bench)) {
         std::vector<std::string> names;
-        for (const BenchName& bench : command.benches) names.push_back(bench.name);
-        if (std::find(names.begin(), names.end(), options.bench) == names.end())
-            return complain(command, "there is no measurement '" + options.bench + "'",
-                            suggestion(options.bench, names));
+        for (const BenchName& known : command.benches) names.push_back(known.name);
+        return complain(command, "there is no measurement '" + options.bench + "'",
+                        suggestion(options.bench, names));
     }
-    if ((command.groups & cityOptions) && !options.city.empty() && options.city != "boulevard" &&
-        options.city != "paper") {
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(options.city, ignored)) {
-            const std::vector<std::string> builtIn{"boulevard", "paper"};
-            return complain(
-                command,
-                "there is no city and no file named '" + options.city + "' (built in: boulevard, paper)",
-                suggestion(options.city, builtIn));
-        }
-    }
+    if (const std::optional<int> code = settleCity(command, groups, spellings, options)) return *code;
     return options;
 }
 

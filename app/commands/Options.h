@@ -22,8 +22,9 @@ struct Options {
     std::string city = "boulevard";  ///< built-in name or file; empty where the command line named none and
                                      ///< the command allows it
     std::uint64_t seed = 1;
-    std::optional<double> size;                ///< metres, side of a generated city or clip square of a file
-    std::vector<std::uint32_t> cars{60};       ///< `bench` takes several numbers, every other command one
+    std::optional<double> size;  ///< metres, side of a generated city or clip square of a file
+    /// One number; several where a measurement allows it, and then none unless the command line names some.
+    std::vector<std::uint32_t> cars{60};
     std::optional<std::filesystem::path> car;  ///< GLB that replaces the built-in cars
     double carLength = 4.5;                    ///< metres
     ReflectionMethod method = ReflectionMethod::mem;
@@ -49,30 +50,40 @@ struct Options {
 
 /// Groups of options; a command takes several.
 enum OptionGroup : unsigned {
-    cityOptions = 1u << 0,        ///< CITY --seed --size
-    trafficOptions = 1u << 1,     ///< --cars --car --car-length
-    reflectionOptions = 1u << 2,  ///< --method --mem --quality --cell
-    pictureOptions = 1u << 3,     ///< --time --resolution
-    outOptions = 1u << 4,         ///< --out
-    jsonOptions = 1u << 5,        ///< --json
-    durationOptions = 1u << 6,    ///< --seconds --frames --fps
-    displayOptions = 1u << 7,     ///< --offscreen --camera --stills
-    exportOptions = 1u << 8,      ///< --city --car --drive as files to write
-    cityIsOptional = 1u << 9,     ///< no CITY means none, not the default
-    mapOptions = 1u << 10,        ///< what reference maps depend on: --cell --time
+    cityOptions = 1u << 0,     ///< CITY, also spelt --city, --seed --size
+    cityIsOptional = 1u << 1,  ///< no CITY means none, not the default
+    trafficOptions = 1u << 2,  ///< --cars --car --car-length
+    severalCars = 1u << 3,     ///< --cars takes several numbers
+    methodOption = 1u << 4,    ///< --method
+    memOption = 1u << 5,       ///< --mem
+    qualityOption = 1u << 6,   ///< --quality
+    cellOption = 1u << 7,      ///< --cell
+    timeOption = 1u << 8,      ///< --time
+    resolutionOption = 1u << 9,
+    outOptions = 1u << 10,       ///< --out
+    jsonOptions = 1u << 11,      ///< --json
+    durationOptions = 1u << 12,  ///< --seconds --frames --fps
+    displayOptions = 1u << 13,   ///< --offscreen --camera --stills
+    /// --city --car --drive as files to write; the city to export is then CITY alone, the body --body.
+    exportOptions = 1u << 14,
+
+    reflectionOptions = methodOption | memOption | qualityOption | cellOption,
+    pictureOptions = timeOption | resolutionOption,
+    mapOptions = cellOption | timeOption,  ///< what reference maps depend on
 };
 
 /// A name that may follow `bench`.
 struct BenchName {
     std::string name;
     std::string summary;
+    unsigned groups = 0;  ///< the options it obeys; others are bad usage
 };
 
 /// One command of the program.
 struct Command {
     std::string name;
     std::string summary;
-    unsigned groups = 0;
+    unsigned groups = 0;                     ///< where there are measurements: what all of them obey
     std::vector<BenchName> benches;          ///< not empty: the first argument is one of these
     std::function<int(const Options&)> run;  ///< returns the exit code
 };

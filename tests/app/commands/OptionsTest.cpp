@@ -16,6 +16,24 @@ Command tour() {
             .run = [](const Options&) { return exitOk; }};
 }
 
+Command bench() {
+    return {.name = "bench",
+            .summary = "test",
+            .groups = cityOptions | jsonOptions,
+            .benches = {{"cars", "frames", trafficOptions | severalCars | resolutionOption},
+                        {"stills", "pictures", trafficOptions | outOptions},
+                        {"tracer", "rays", cellOption}},
+            .run = [](const Options&) { return exitOk; }};
+}
+
+Command exporting() {
+    return {.name = "export",
+            .summary = "test",
+            .groups = cityOptions | trafficOptions | exportOptions,
+            .benches = {},
+            .run = [](const Options&) { return exitOk; }};
+}
+
 ParseOutcome parse(const Command& command, std::vector<std::string> arguments) {
     return parseOptions(command, arguments);
 }
@@ -133,17 +151,95 @@ TEST(OptionsTest, secondsAndFramesExcludeEachOther) {
 }
 
 TEST(OptionsTest, aBenchNeedsAKnownNameAndTakesSeveralNumbersOfCars) {
-    Command bench = tour();
-    bench.name = "bench";
-    bench.benches = {{"cars", "frames"}, {"tracer", "rays"}};
-    EXPECT_EQ(refused(bench, {}).first, exitUsage);
-    EXPECT_NE(refused(bench, {"trace"}).second.find("did you mean 'tracer'"), std::string::npos);
-    const ParseOutcome outcome = parse(bench, {"cars", "paper", "--cars", "10,30,100"});
+    EXPECT_EQ(refused(bench(), {}).first, exitUsage);
+    EXPECT_NE(refused(bench(), {"trace"}).second.find("did you mean 'tracer'"), std::string::npos);
+    const ParseOutcome outcome = parse(bench(), {"cars", "paper", "--cars", "10,30,100"});
     const auto& o = std::get<Options>(outcome);
     EXPECT_EQ(o.bench, "cars");
     EXPECT_EQ(o.city, "paper");
     EXPECT_EQ(o.cars, (std::vector<std::uint32_t>{10, 30, 100}));
     EXPECT_EQ(refused(tour(), {"--cars", "10,30"}).first, exitUsage);
+}
+
+TEST(OptionsTest, theCityMayBeSpeltAsAnOptionAnywhere) {
+    const auto cityOf = [](const Command& command, std::vector<std::string> arguments) {
+        const ParseOutcome outcome = parse(command, std::move(arguments));
+        const auto* options = std::get_if<Options>(&outcome);
+        return options ? options->city : "refused";
+    };
+    EXPECT_EQ(cityOf(bench(), {"cars", "--city", "paper", "--cars", "10,30,100"}), "paper");
+    EXPECT_EQ(cityOf(bench(), {"--city=paper", "cars"}), "paper");
+    EXPECT_EQ(cityOf(tour(), {"--city", "paper"}), "paper");
+    EXPECT_EQ(cityOf(tour(), {"paper", "--city", "paper"}), "paper");
+    EXPECT_EQ(cityOf(bench(), {"cars"}), "boulevard");
+
+    const auto [code, said] = refused(bench(), {"cars", "boulevard", "--city", "paper"});
+    EXPECT_EQ(code, exitUsage);
+    EXPECT_NE(said.find("'boulevard'"), std::string::npos) << said;
+    EXPECT_NE(said.find("'paper'"), std::string::npos) << said;
+    EXPECT_EQ(refused(tour(), {"--city", "/nowhere/city.osm"}).first, exitUsage);
+    EXPECT_NE(refused(tour(), {"--city", "papper"}).second.find("did you mean 'paper'"), std::string::npos);
+}
+
+TEST(OptionsTest, exportWritesToItsCityAndNeverOverAnythingButAGlb) {
+    const ParseOutcome outcome = parse(exporting(), {"paper", "--city", "F.glb", "--car", "C.GLB"});
+    const auto& o = std::get<Options>(outcome);
+    EXPECT_EQ(o.city, "paper");
+    EXPECT_EQ(o.exportCity, std::filesystem::path("F.glb"));
+    EXPECT_EQ(o.exportCar, std::filesystem::path("C.GLB"));
+    EXPECT_FALSE(o.car);
+    for (const char* city : {"paper", "helsinki.osm.pbf", ""}) {
+        const auto [code, said] = refused(exporting(), {std::string("--city=") + city});
+        EXPECT_EQ(code, exitUsage) << city;
+        EXPECT_NE(said.find("--city"), std::string::npos) << said;
+    }
+    EXPECT_NE(refused(exporting(), {"--car", "taxi.obj"}).second.find("--body"), std::string::npos);
+}
+
+TEST(OptionsTest, aMeasurementRefusesWhatItDoesNotDependOn) {
+    const auto [code, said] = refused(bench(), {"tracer", "--cars", "3"});
+    EXPECT_EQ(code, exitUsage);
+    EXPECT_NE(said.find("'tracer' does not depend on --cars"), std::string::npos) << said;
+    EXPECT_EQ(refused(bench(), {"--out=x", "cars"}).first, exitUsage);
+    EXPECT_EQ(refused(bench(), {"stills", "--cars", "3,4"}).first, exitUsage);
+    EXPECT_NE(refused(bench(), {"tracer", "--zzzz"}).second.find("unknown option"), std::string::npos);
+    const ParseOutcome stills = parse(bench(), {"stills"}), cars = parse(bench(), {"cars"});
+    EXPECT_EQ(std::get<Options>(stills).cars, std::vector<std::uint32_t>{60});
+    EXPECT_TRUE(std::get<Options>(cars).cars.empty()) << "the measurement has a default of its own";
+
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(std::get<int>(parse(bench(), {"stills", "--help"})), exitOk);
+    const std::string help = testing::internal::GetCapturedStdout();
+    EXPECT_NE(help.find("--out"), std::string::npos);
+    EXPECT_NE(help.find("--city"), std::string::npos);
+    EXPECT_EQ(help.find("--cell"), std::string::npos);
+}
+
+TEST(OptionsTest, namesThatAreEmptyOrTheNextOptionAreRefused) {
+    for (const char* option : {"--out", "--json", "--car"}) {
+        EXPECT_EQ(refused(tour(), {option, ""}).first, exitUsage) << option;
+        EXPECT_EQ(refused(tour(), {std::string(option) + "=", "--offscreen"}).first, exitUsage) << option;
+        const auto [code, said] = refused(tour(), {option, "--offscreen"});
+        EXPECT_EQ(code, exitUsage) << option;
+        EXPECT_NE(said.find(option), std::string::npos) << said;
+    }
+    EXPECT_EQ(refused(tour(), {""}).first, exitUsage);
+    const ParseOutcome outcome = parse(tour(), {"--out", "./-x"});
+    EXPECT_EQ(std::get<Options>(outcome).out, "./-x");
+}
+
+TEST(OptionsTest, sizesHaveTheBoundsOfTheirCity) {
+    for (const char* size : {"199", "2001"}) {
+        const auto [code, said] = refused(tour(), {"--size", size});
+        EXPECT_EQ(code, exitUsage) << size;
+        EXPECT_NE(said.find("200 to 2000"), std::string::npos) << said;
+    }
+    for (const char* size : {"200", "2000"})
+        EXPECT_TRUE(std::holds_alternative<Options>(parse(tour(), {"--size", size}))) << size;
+    // A file may be cut smaller or larger; this source stands for one.
+    for (const char* size : {"100", "20000"})
+        EXPECT_TRUE(std::holds_alternative<Options>(parse(tour(), {__FILE__, "--size", size}))) << size;
+    EXPECT_NE(refused(tour(), {__FILE__, "--size", "99"}).second.find("100 to 20000"), std::string::npos);
 }
 
 TEST(ProgramTest, exitCodesTellUsageFromSuccess) {
