@@ -65,7 +65,8 @@ void VideoWriter::Impl::start(int framesPerSecond) {
         encoder == "libx264" ? std::vector<std::string>{"-preset", "veryfast", "-crf", "19"}
                              : std::vector<std::string>{"-qscale:v", "3"};
     words.insert(words.end(), quality.begin(), quality.end());
-    words.insert(words.end(), {"-movflags", "+faststart", "-f", "mp4", file.aside().string()});
+    // The prefix keeps ffmpeg from taking a name for an option or for a protocol.
+    words.insert(words.end(), {"-movflags", "+faststart", "-f", "mp4", "file:" + file.aside().string()});
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);

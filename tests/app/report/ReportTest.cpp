@@ -203,5 +203,19 @@ TEST(VideoWriterTest, whatIsDroppedHalfwayIsStillPlayable) {
     EXPECT_EQ(entries(folder), 1u);
 }
 
+TEST(VideoWriterTest, namesLikeOptionsOrProtocolsAreNames) {
+    if (!VideoWriter::available()) GTEST_SKIP() << "no ffmpeg here";
+    const fs::path folder = emptyFolder(), before = fs::current_path();
+    fs::current_path(folder);
+    for (const char* name : {"-y.mp4", "pipe:1.mp4", "with space.mp4"}) {
+        VideoWriter video(name, 64, 48, 30);
+        video.add(gradient(64, 48, 5));
+        video.finish();
+        EXPECT_EQ(probe(folder / name), "64,48,1\n") << name;
+    }
+    fs::current_path(before);
+    EXPECT_EQ(entries(folder), 3u);
+}
+
 }  // namespace
 }  // namespace app
