@@ -37,6 +37,13 @@ class Buffer {
         return buffer;
     }
 
+    /// Immutable storage that the GPU alone fills (by copies, by shaders); contents are undefined.
+    static Buffer sized(std::size_t bytes) {
+        Buffer buffer = create();
+        glNamedBufferStorage(buffer.name(), static_cast<GLsizeiptr>(bytes), nullptr, 0);
+        return buffer;
+    }
+
     /// New contents in new storage: what the GPU still reads stays untouched, so this never waits.
     template <class T>
     void replace(std::span<const T> data, GLenum usage = GL_STREAM_DRAW) {

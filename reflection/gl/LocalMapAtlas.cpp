@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 
+#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/gl/Texture.h"
 
 namespace reflection {
@@ -48,9 +48,7 @@ void LocalMapAtlas::Impl::filterOnProcessor(LocalMapSlot slot, int faceSize) {
 }
 
 LocalMapAtlas::LocalMapAtlas() : impl_(std::make_unique<Impl>()) {
-    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const std::string_view name = renderer ? renderer : "";
-    impl_->software = name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos;
+    impl_->software = softwareRenderer();
 }
 LocalMapAtlas::~LocalMapAtlas() = default;
 LocalMapAtlas::LocalMapAtlas(LocalMapAtlas&&) noexcept = default;
@@ -81,6 +79,19 @@ void LocalMapAtlas::upload(LocalMapSlot slot, const PackedMips& mips) {
         const int side = mips.faceSize >> level;
         glTextureSubImage3D(c.array.name(), level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB,
                             GL_UNSIGNED_INT_10F_11F_11F_REV, mips.texels.data() + mips.levelOffset(level));
+    }
+}
+
+void LocalMapAtlas::download(LocalMapSlot slot, PackedMips& mips) const {
+    const Impl::SizeClass& c = impl_->classes[static_cast<std::size_t>(slot.sizeClass)];
+    mips.faceSize = localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)];
+    mips.texels.resize(mips.levelOffset(mips.levelCount()));
+    for (int level = 0; level < mips.levelCount(); ++level) {
+        const int side = mips.faceSize >> level;
+        glGetTextureSubImage(c.array.name(), level, 0, 0, 6 * slot.layer, side, side, 6, GL_RGB,
+                             GL_UNSIGNED_INT_10F_11F_11F_REV,
+                             static_cast<GLsizei>(6 * static_cast<std::size_t>(side * side) * texelBytes),
+                             mips.texels.data() + mips.levelOffset(level));
     }
 }
 

@@ -27,6 +27,9 @@ class LocalMapAtlas {
     /// Replaces a map. The slot must be reserved and the mips' face size that of its class.
     void upload(LocalMapSlot slot, const PackedMips& mips);
 
+    /// Reads a map back, all levels. Waits for the GPU: for tests and measurements.
+    void download(LocalMapSlot slot, PackedMips& mips) const;
+
     /// Where SceneDrawer::drawCube may draw a map; call `finishDrawn` afterwards to make its mipmaps.
     CubeTarget target(LocalMapSlot slot) const;
     void finishDrawn(LocalMapSlot slot);

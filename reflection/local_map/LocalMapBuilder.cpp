@@ -198,6 +198,14 @@ void LocalMapBuilder::fillBox(const LocalMapRequest& request, int face) {
     }
 }
 
+std::uint32_t LocalMapBuilder::buildStarts(const GridTracer& tracer, const LocalMapRequest& request, int face,
+                                           std::span<float> reciprocal) {
+    mesh_.build(tracer, glm::vec3(request.centre), face, request.mesh);
+    fillReciprocal(request.faceSize);
+    std::copy(reciprocal_.begin(), reciprocal_.end(), reciprocal.begin());
+    return mesh_.raysTraced();
+}
+
 std::uint32_t LocalMapBuilder::buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face,
                                          LocalMap& map) {
     const int n = request.faceSize;

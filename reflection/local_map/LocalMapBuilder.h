@@ -52,6 +52,11 @@ class LocalMapBuilder {
     std::uint32_t buildFace(const GridTracer& tracer, const LocalMapRequest& request, int face,
                             LocalMap& map);
 
+    /// What `buildFace` starts the texels of a face from, for those who look colours up elsewhere: the mesh's
+    /// 1/t, faceSize^2 values, 0 for sky. The method must be mem. Returns the rays traced.
+    std::uint32_t buildStarts(const GridTracer& tracer, const LocalMapRequest& request, int face,
+                              std::span<float> reciprocal);
+
     /// The mesh of the face built last (memPaper and mem).
     const LocalMapMesh& mesh() const { return mesh_; }
 

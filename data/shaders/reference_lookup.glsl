@@ -1,0 +1,183 @@
+// The refined lookup of local maps' texels in packed reference maps: reflection/local_map/ReferenceLookup.cpp for
+// one texel an invocation. Names, steps and constants are that file's, so that a change there is easily made
+// here; what differs is said where it differs.
+
+const uint nearnessMask = 0x7ffu;  // PackedReferenceMap.h from here to skyDepth
+const uint nearnessBits = 11u;
+const uint nearnessExponentBias = 127u - 13u;
+const uint sumMantissaShift = 18u;
+const uint sumExponentBias = 127u - 16u;
+const float skyDepth = 8192.0;
+const float infinity = uintBitsToFloat(0x7f800000u);
+const float unreached = 3.0e38;
+
+layout(std430, binding = 0) readonly restrict buffer ReferenceMaps { uint packedMaps[]; };
+
+/// One level of a reference map, as seen from a local map's centre (C++: LocalMapPass::MapView).
+struct MapView {
+    uint words;   // where its 20-bit words begin, in uints
+    uint chroma;  // where its chroma begins, in uints
+    int faceSize;
+    int chromaColumns;
+    vec3 offset;
+    float radianceScale;
+};
+
+layout(std430, binding = 1) readonly restrict buffer MapViews { MapView mapViews[]; };
+
+struct FacePoint {
+    int face;
+    vec2 uv;      // texels from the face's corner, 0 .. faceSize
+    float depth;  // along the face's major axis
+};
+
+FacePoint toFace(vec3 p, int faceSize) {
+    vec3 a = abs(p);
+    bool isX = a.x >= a.y && a.x >= a.z;
+    bool isY = !isX && a.y >= a.z;
+    // A map's own centre has no direction; any does.
+    float major = max(max(a.x, max(a.y, a.z)), 1e-30);
+    float value = isX ? p.x : isY ? p.y : p.z;
+    bool negative = value < 0.0;
+    float sign = negative ? -1.0 : 1.0;
+    float s = isX ? -p.z * sign : isY ? p.x : p.x * sign;
+    float t = isY ? p.z * sign : -p.y;
+    float size = 0.5 * float(faceSize);
+    return FacePoint((isX ? 0 : isY ? 2 : 4) + int(negative), vec2(s, t) * (size / major) + size, major);
+}
+
+/// The 20-bit words of a bordered texel and of the one behind it: bit 20 * index on, little-endian.
+uvec2 fetchPair(MapView map, uint index) {
+    uint bit = 20u * index;
+    uint at = map.words + (bit >> 5);
+    uint shift = bit & 31u;
+    uint low = packedMaps[at], high = packedMaps[at + 1u];
+    // A shift by 32 is undefined: (x << 1) << (31 - shift).
+    uint first = (low >> shift) | ((high << 1) << (31u - shift));
+    shift += 20u;
+    if (shift >= 32u) {
+        shift -= 32u;
+        low = high;
+        high = shift > 12u ? packedMaps[at + 2u] : 0u;
+    }
+    uint second = (low >> shift) | ((high << 1) << (31u - shift));
+    return uvec2(first, second) & 0xfffffu;
+}
+
+vec2 nearnessOf(uvec2 word) {
+    return uintBitsToFloat(((word & nearnessMask) << 16) + (nearnessExponentBias << 23));
+}
+vec2 sumOf(uvec2 word) {
+    return uintBitsToFloat(((word >> nearnessBits) << sumMantissaShift) + (sumExponentBias << 23));
+}
+
+/// What a map holds in the direction of a point.
+struct Probe {
+    float disagreement;  // depth of the point times the nearness there, minus 1
+    float sum;           // R+G+B
+    int chromaBlock;
+};
+
+/// Bilinear in nearness and brightness; the block of the nearest texel for chroma.
+Probe probe(MapView map, vec3 point) {
+    FacePoint p = toFace(point, map.faceSize);
+    vec2 uv = clamp(p.uv + 0.5, vec2(0.0), vec2(float(map.faceSize) + 0.9999));
+    ivec2 at = ivec2(uv);
+    vec2 f = uv - vec2(at);
+    int m = map.faceSize + 2;
+    int index = (p.face * m + at.y) * m + at.x;
+    uvec2 upper = fetchPair(map, uint(index)), lower = fetchPair(map, uint(index + m));
+    vec2 nearness = mix(nearnessOf(upper), nearnessOf(lower), f.y);
+    vec2 sum = mix(sumOf(upper), sumOf(lower), f.y);
+    int rows = m / 2;
+    ivec2 block = min(ivec2(uv + 0.5) >> ivec2(2, 1), ivec2(map.chromaColumns, rows) - 1);
+    return Probe(p.depth * mix(nearness.x, nearness.y, f.x) - 1.0, mix(sum.x, sum.y, f.x),
+                 (p.face * rows + block.y) * map.chromaColumns + block.x);
+}
+
+vec3 colourOf(MapView map, float sum, int chromaBlock) {
+    uint shares = packedMaps[map.chroma + uint(chromaBlock >> 1)] >> (16 * (chromaBlock & 1));
+    float red = float(shares & 0xffu) / 255.0;
+    float blue = float((shares >> 8) & 0xffu) / 255.0;
+    return sum * map.radianceScale * vec3(red, max(0.0, 1.0 - red - blue), blue);
+}
+
+/// How unlike the local map's own scale a map sees a point: ReferenceLookup.cpp's orderByScale.
+float misfitOf(MapView map, vec3 point) {
+    vec3 apart = point - map.offset;
+    float own = max(dot(point, point), 1e-30), squared = max(dot(apart, apart), 1e-30);
+    return squared > own ? squared / own : own / squared;
+}
+
+/// The candidate that follows the one of this misfit and number in the order by misfit, then number. Found anew
+/// each time instead of sorted once: most texels ask one candidate, and a sorted list would have to live in memory.
+uint nextByScale(uint firstView, uint count, vec3 point, inout float misfit, uint last) {
+    uint best = count;
+    float bestMisfit = infinity;
+    for (uint k = 0u; k < count; ++k) {
+        float m = misfitOf(mapViews[firstView + k], point);
+        bool follows = m > misfit || (m == misfit && (last == count || k > last));
+        if (follows && (m < bestMisfit || best == count)) {
+            best = k;
+            bestMisfit = m;
+        }
+    }
+    misfit = bestMisfit;
+    return best;
+}
+
+/// The colour of one texel. `direction`: of the texel's ray; `start`: its heightfield hit, 1 / reciprocal;
+/// `orderPoint`: where the middle one of the texels that share an order starts. Without candidates black sky.
+vec3 lookUpRefined(vec3 direction, float start, vec3 orderPoint, uint firstView, uint count, int lookups,
+                   float agreement, out float depth) {
+    float dd = dot(direction, direction);
+    float bestError = unreached, bestDepth = count > 0u ? start : infinity;
+    vec3 colour = vec3(0.0);
+    float misfit = -1.0;
+    uint k = count;
+    for (uint asked = 0u; asked < count; ++asked) {
+        k = nextByScale(firstView, count, orderPoint, misfit, k);
+        if (k >= count) break;
+        MapView map = mapViews[firstView + k];
+        float dc = dot(direction, map.offset);
+        float ta = start;
+        Probe at = probe(map, ta * direction - map.offset);
+        float qa = at.disagreement, sum = at.sum, error = abs(qa), candidateDepth = ta;
+        int block = at.chromaBlock;
+        float tb = ta, qb = qa;
+        // Each texel ends for itself; on the processor a vector's texels go on until the last has ended.
+        for (int step = 1; step < lookups && error > agreement; ++step) {
+            float next;
+            if (step == 1) {
+                // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray.
+                next = ((ta * dd - dc) / max(qa + 1.0, 1e-4) + dc) / dd;
+                next = min(next, skyDepth);
+                next = next > 0.0 ? next : 0.25 * tb;
+            } else {
+                float slope = qb - qa;
+                next = abs(slope) < 1e-6 ? tb : tb - qb * (tb - ta) / slope;
+                next = max(min(next, skyDepth), 0.25 * tb);
+            }
+            ta = tb;
+            qa = qb;
+            tb = next;
+            at = probe(map, tb * direction - map.offset);
+            qb = at.disagreement;
+            if (abs(qb) < error) {
+                error = abs(qb);
+                candidateDepth = tb;
+                sum = at.sum;
+                block = at.chromaBlock;
+            }
+        }
+        if (error < bestError) {
+            colour = colourOf(map, sum, block);
+            bestError = error;
+            bestDepth = candidateDepth;
+        }
+        if (bestError <= agreement) break;
+    }
+    // Between the farthest building and the sky there is nothing: halfway decides.
+    depth = bestDepth >= 0.5 * skyDepth ? infinity : bestDepth;
+    return colour;
+}

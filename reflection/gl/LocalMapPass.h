@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/local_map/LocalMapBuilder.h"
+#include "reflection/local_map/LocalMapSlot.h"
+#include "reflection/local_map/MovingObjects.h"
+#include "reflection/reference_maps/PackedReferenceMap.h"
+#include "reflection/tracing/GridTracer.h"
+
+namespace reflection {
+
+/// A local map to build on the GPU.
+struct LocalMapJob {
+    LocalMapSlot slot;        ///< reserved in the atlas
+    LocalMapRequest request;  ///< of the method `mem`; the slot's face size
+    std::span<const MovingObject> objects;
+};
+
+/// Local maps made by the GPU from reference maps that live there: what LocalMapBuilder, drawMovingObjects
+/// and packMips do with LocalMapMethod::mem, one invocation a texel. The processor traces the mesh's rays and
+/// draws moving objects into boxes of texels of their own, with depth; the GPU starts from the mesh's
+/// reciprocals, looks colours up as lookUpRefined does, puts objects before them by depth, and makes all
+/// mipmap levels.
+///
+/// For a frame: one dispatch for each face size in use, and for those of 16 texels and more one of a group a
+/// face for the coarse levels. Nothing is read back and nothing waited for. What travels each frame is 4
+/// bytes a texel (the reciprocals), 16 bytes a texel of the objects' boxes, and 48 bytes a face. The
+/// reciprocals rather than the mesh's quads: a quad holds for 6 to 30 texels and takes 28 bytes, so that
+/// quads would save 3 of the 4 bytes, but 80,000 texels a frame are 0.3 MB, filled in 0.05 ms; and a search
+/// for the quad of each texel, or a pass that draws them with a barrier behind it, costs a GPU more than it
+/// saves.
+///
+/// Departures from lookUpRefined, within its agreement: each texel ends its search for itself, where the
+/// processor goes on until all of a vector have ended; eight texels of a row share an order of candidates,
+/// where the processor has as many as a vector holds.
+///
+/// Needs a current GL 4.5 context in every call and at destruction.
+class LocalMapPass {
+  public:
+    /// Room for all of `maps`, or as many as `budget` bytes hold: see ReferenceMapBuffer. The maps must
+    /// outlive this. Throws std::runtime_error when the shaders are missing or do not compile.
+    LocalMapPass(std::span<const PackedReferenceMap> maps, std::size_t budget);
+    ~LocalMapPass();
+    LocalMapPass(const LocalMapPass&) = delete;
+    LocalMapPass& operator=(const LocalMapPass&) = delete;
+
+    /// Builds all maps. Where they ask for more reference maps than fit, in several batches, each once its
+    /// maps are there; candidates beyond the places there are (the last) are left out. Returns the rays
+    /// traced.
+    std::uint64_t build(const GridTracer& tracer, std::span<const LocalMapJob> jobs,
+                        const LocalMapAtlas& atlas);
+
+    std::size_t bytes() const;         ///< allocated on the GPU for reference maps
+    double bytesPerTexel() const;      ///< of those there now; 0 when there are none
+    std::size_t mapsUploaded() const;  ///< so far
+    std::uint32_t dispatches() const;  ///< of the last build
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace reflection
