@@ -15,6 +15,8 @@ int benchCars(const Options& options) {
     CarsBenchOptions settings;
     settings.seed = options.seed;
     settings.quality = options.quality;
+    settings.mapsOn = options.mapsOn;
+    settings.gpuMapBytes = options.gpuMapBytes();
     settings.resolution = options.resolution;
     settings.quiet = options.quiet;
     settings.frameStep = 1.0 / options.fps;

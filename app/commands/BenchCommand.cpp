@@ -16,9 +16,11 @@ std::vector<Bench> allBenches() {
     return {
         {{"cars",
           "frame time and error against the number of mirroring cars, every method on the same frames",
-          trafficOptions | severalCars | qualityOption | cellOption | pictureOptions | durationOptions},
+          trafficOptions | severalCars | qualityOption | cellOption | mapsOnOptions | pictureOptions |
+              durationOptions},
          benchCars},
-        {{"localmap", "one local map by every method, against re-rendering its six faces", mapOptions},
+        {{"localmap", "one local map by every method, against re-rendering its six faces",
+          mapOptions | mapsOnOptions},
          benchLocalMap},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},

@@ -15,6 +15,7 @@
 #include "app/frame/ReflectionEngine.h"
 #include "app/render/Readback.h"
 #include "app/report/Progress.h"
+#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/truth/ImageError.h"
 
 namespace app {
@@ -136,11 +137,14 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         if (stage.visible < cars) spdlog::warn("only {} of {} cars fit on screen", stage.visible, cars);
 
         std::vector<MethodRun> methods;
-        const auto add = [&](std::string name, ReflectionMethod method, MemVariant variant) {
+        const auto add = [&](std::string name, ReflectionMethod method, MemVariant variant,
+                             MapsOn mapsOn = MapsOn::cpu) {
             ReflectionSettings settings;
             settings.method = method;
             settings.variant = variant;
             settings.quality = options.quality;
+            settings.mapsOn = mapsOn;
+            settings.gpuMapBytes = options.gpuMapBytes;
             methods.push_back(
                 {std::move(name),
                  std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings),
@@ -152,6 +156,9 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         add("box", ReflectionMethod::box, MemVariant::ours);
         add("mem paper", ReflectionMethod::mem, MemVariant::paper);
         add("mem", ReflectionMethod::mem, MemVariant::ours);
+        if (options.mapsOn == MapsOn::gpu ||
+            (options.mapsOn == MapsOn::automatic && !reflection::softwareRenderer()))
+            add("mem gpu", ReflectionMethod::mem, MemVariant::ours, MapsOn::gpu);
         add("rerender", ReflectionMethod::rerender, MemVariant::ours);
 
         Cast cast(cars);
@@ -225,7 +232,8 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             row.psnr = method.psnrSum / method.compared;
             row.flip = method.flipSum / method.compared;
             row.mapsPerFrame = method.maps / method.compared;
-            row.textureBytes = method.engine->counters().localMapBytes;
+            row.textureBytes =
+                method.engine->counters().localMapBytes + method.engine->counters().referenceMapGpuBytes;
             rows.push_back(row);
         }
         if (interrupted()) break;

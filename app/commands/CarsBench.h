@@ -7,7 +7,7 @@
 
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
-#include "app/frame/ReflectionMethod.h"
+#include "app/frame/ReflectionEngine.h"
 #include "app/render/SceneRenderer.h"
 #include "app/report/Timing.h"
 
@@ -21,6 +21,9 @@ struct CarsBenchOptions {
     glm::ivec2 resolution{1280, 720};
     std::uint64_t seed = 1;
     Quality quality = Quality::medium;
+    MapsOn mapsOn =
+        MapsOn::automatic;  ///< gpu, or automatic on a graphics card: a row `mem gpu` beside `mem`
+    std::size_t gpuMapBytes = ReflectionSettings{}.gpuMapBytes;
     bool quiet = false;
 };
 
@@ -36,7 +39,7 @@ struct CarsRow {
     double psnr = 0,
            flip = 0;  ///< over the cars' mirroring pixels, against re-rendering every car every frame
     double mapsPerFrame = 0;
-    std::size_t textureBytes = 0;  ///< local maps on the GPU
+    std::size_t textureBytes = 0;  ///< local maps, and reference maps where they are there, on the GPU
 };
 
 /// All reflection methods on the same frames, interleaved frame by frame: `none static blend box mem-paper

@@ -12,6 +12,8 @@ namespace app {
 Drive::Drive(const Scene& scene, const Options& options)
     : scene_(&scene),
       seed_(options.seed),
+      mapsOn_(options.mapsOn),
+      gpuMapBytes_(options.gpuMapBytes()),
       settings_{options.method, options.mem, options.quality, options.cars.front(), options.hour},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       renderer_(std::make_unique<SceneRenderer>(scene.city, scene.models, renderOptions())),
@@ -51,6 +53,8 @@ ReflectionSettings Drive::reflectionSettings() const {
     settings.method = settings_.method;
     settings.variant = settings_.mem;
     settings.quality = settings_.quality;
+    settings.mapsOn = mapsOn_;
+    settings.gpuMapBytes = gpuMapBytes_;
     return settings;
 }
 

@@ -57,6 +57,8 @@ class Drive {
     const Scene* scene_;
     std::uint64_t seed_;
     PreparationOptions preparation_;
+    MapsOn mapsOn_;
+    std::size_t gpuMapBytes_;
     DriveSettings settings_;
     vehicles::Traffic traffic_;
     std::unique_ptr<SceneRenderer> renderer_;

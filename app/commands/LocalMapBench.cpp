@@ -12,7 +12,9 @@
 #include "app/report/Progress.h"
 #include "reflection/gl/Finish.h"
 #include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/gl/LocalMapPass.h"
 #include "reflection/gl/ReferenceMapBaker.h"
+#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/reference_maps/CubeMapping.h"
 #include "reflection/reference_maps/Selection.h"
 #include "reflection/truth/ImageError.h"
@@ -63,10 +65,18 @@ class MethodRun {
   public:
     MethodRun(std::string name, const ReflectionSettings& settings)
         : name_(std::move(name)), settings_(settings) {}
+    /// On the GPU.
+    MethodRun(std::string name, const ReflectionSettings& settings,
+              std::span<const reflection::PackedReferenceMap> maps)
+        : name_(std::move(name)),
+          settings_(settings),
+          pass_(std::make_unique<reflection::LocalMapPass>(maps, settings.gpuMapBytes)) {}
 
     const std::string& name() const { return name_; }
 
-    void build(const PreparedReflections& prepared, const Place& place, int faceSize) {
+    /// One map, in the slot of the atlas.
+    void build(const PreparedReflections& prepared, const Place& place, int faceSize,
+               reflection::LocalMapAtlas& atlas, reflection::LocalMapSlot slot) {
         reflection::LocalMapRequest request = requestFor(settings_, faceSize);
         request.centre = place.centre;
         request.streetDirection = place.direction;
@@ -76,6 +86,11 @@ class MethodRun {
                                                candidateCount(settings_))
                 : reflection::selectNearestTwo(prepared.maps, place.centre);
         request.candidates = candidates;
+        if (pass_) {
+            const reflection::LocalMapJob job{slot, request, {}};
+            rays_ = pass_->build(*prepared.tracer, std::span(&job, 1), atlas);
+            return;
+        }
         map_.resize(faceSize);
         std::array<std::uint32_t, 6> rays{};
         tbb::parallel_for(0, 6, [&](int face) {
@@ -85,15 +100,26 @@ class MethodRun {
         rays_ = 0;
         for (std::uint32_t r : rays) rays_ += r;
         reflection::packMips(map_, mips_);
+        atlas.upload(slot, mips_);
     }
-    const reflection::LocalMap& map() const { return map_; }
-    const reflection::PackedMips& mips() const { return mips_; }
+    /// Of the map built last, which must still be in the slot.
+    Picture picture(const reflection::LocalMapAtlas& atlas, reflection::LocalMapSlot slot,
+                    const Lighting& light) {
+        if (!pass_) return pictureOf(map_, light);
+        atlas.download(slot, mips_);
+        map_.resize(mips_.faceSize);
+        for (std::size_t i = 0; i < map_.red.size(); ++i)
+            reflection::unpackTexel(mips_.texels[i], map_.red[i], map_.green[i], map_.blue[i]);
+        return pictureOf(map_, light);
+    }
+    const reflection::LocalMapPass* pass() const { return pass_.get(); }
     std::uint64_t rays() const { return rays_; }
 
   private:
     std::string name_;
     ReflectionSettings settings_;
     std::array<reflection::LocalMapBuilder, 6> builders_;
+    std::unique_ptr<reflection::LocalMapPass> pass_;
     reflection::LocalMap map_;
     reflection::PackedMips mips_;
     std::uint64_t rays_ = 0;
@@ -128,6 +154,12 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     add("mem low", ReflectionMethod::mem, MemVariant::ours, Quality::low);
     add("mem", ReflectionMethod::mem, MemVariant::ours, Quality::medium);
     add("mem high", ReflectionMethod::mem, MemVariant::ours, Quality::high);
+    if (options.mapsOn == MapsOn::gpu ||
+        (options.mapsOn == MapsOn::automatic && !reflection::softwareRenderer())) {
+        ReflectionSettings settings{ReflectionMethod::mem, MemVariant::ours, Quality::medium, true, false};
+        settings.gpuMapBytes = options.gpuMapBytes;
+        methods.emplace_back("mem gpu", settings, prepared.maps);
+    }
 
     reflection::TriangleTracer triangles;
     for (const city::Chunk& chunk : city.chunks) triangles.add(chunk.mesh);
@@ -140,12 +172,16 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     const std::vector<Place> places = choosePlaces(city, options);
     reflection::ReferenceMapBaker plain(n, 1), fine(n, 4);
     reflection::LocalMapAtlas atlas;
-    atlas.reserve(0, 1);
+    // A slot for re-rendering and one for each method, whose map is looked at in the end.
+    atlas.reserve(0, 1 + static_cast<int>(methods.size()));
     const reflection::LocalMapSlot slot{0, 0};
+    const auto slotOf = [](std::size_t method) {
+        return reflection::LocalMapSlot{0, static_cast<std::int16_t>(1 + method)};
+    };
 
     struct Sums {
         std::vector<double> times, ratios;
-        double squared = 0, squaredFine = 0, worst = 0, flip = 0;
+        double squared = 0, squaredFine = 0, worst = 0, flip = 0, squaredToProcessor = 0;
         std::uint64_t rays = 0;
     };
     std::vector<Sums> sums(methods.size());
@@ -192,8 +228,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
             }
             for (std::size_t m = 0; m < methods.size(); ++m) {
                 watch.lap();
-                methods[m].build(prepared, place, n);
-                atlas.upload(slot, methods[m].mips());
+                methods[m].build(prepared, place, n, atlas, slotOf(m));
                 reflection::finishGpu();
                 const double time = watch.lap();
                 if (round > 0) {
@@ -203,8 +238,11 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
             }
         }
         rerenderSquaredFine += squaredError(truth, fineTruth);
+        Picture processors;
         for (std::size_t m = 0; m < methods.size(); ++m) {
-            const Picture picture = pictureOf(methods[m].map(), options.lighting);
+            const Picture picture = methods[m].picture(atlas, slotOf(m), options.lighting);
+            if (methods[m].name() == "mem") processors = picture;
+            sums[m].squaredToProcessor += methods[m].pass() ? squaredError(picture, processors) : 0;
             const double squared = squaredError(picture, truth);
             sums[m].squared += squared;
             sums[m].worst = std::max(sums[m].worst, squared);
@@ -229,6 +267,11 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
         row.psnrSupersampled = decibels(sums[m].squaredFine / count);
         row.flip = sums[m].flip / count;
         row.rays = sums[m].rays / done;
+        if (const reflection::LocalMapPass* pass = methods[m].pass()) {
+            row.psnrToProcessor = decibels(sums[m].squaredToProcessor / count);
+            row.referenceMapGpuBytes = pass->bytes();
+            row.bytesPerTexel = pass->bytesPerTexel();
+        }
         rows.push_back(row);
     }
     LocalMapRow rerender;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands/PreparedReflections.h"
+#include "app/frame/ReflectionEngine.h"
 #include "app/report/Timing.h"
 #include "city/model/CityModel.h"
 
@@ -19,6 +20,9 @@ struct LocalMapBenchOptions {
     float centreHeight = 0.8f;  ///< of the maps above the road, metres
     Lighting lighting;
     bool quiet = false;
+    MapsOn mapsOn =
+        MapsOn::automatic;  ///< gpu, or automatic on a graphics card: a row `mem gpu` beside `mem`
+    std::size_t gpuMapBytes = ReflectionSettings{}.gpuMapBytes;
 };
 
 struct LocalMapRow {
@@ -29,8 +33,11 @@ struct LocalMapRow {
     double psnr = NAN;  ///< dB, tone mapped, against re-rendering at the same size; over all places' texels
     double psnrWorst = NAN;         ///< of the worst place
     double psnrSupersampled = NAN;  ///< against re-rendering with 4x4 samples a texel
+    double psnrToProcessor = NAN;   ///< `mem gpu`: against `mem`, texels rounded as on the GPU included
     double flip = NAN;              ///< mean FLIP over the faces
     std::uint64_t rays = 0;         ///< a map, mean
+    std::size_t referenceMapGpuBytes = 0;  ///< `mem gpu`: allocated
+    double bytesPerTexel = NAN;            ///< `mem gpu`: of the reference maps there
 };
 
 /// One local map of a stopped car: every method against re-rendering its six faces, interleaved place by

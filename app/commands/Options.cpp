@@ -173,6 +173,18 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
     if (groups & qualityOption)
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
+    if (groups & mapsOnOptions) {
+        addNamed(parser, "--maps-on", o.mapsOn, mapsOnNames,
+                 "where mem keeps reference maps and makes local maps (default auto: gpu, but cpu where "
+                 "OpenGL is software)");
+        parser
+            .add_option("--gpu-map-memory", o.gpuMapMegabytes,
+                        "for reference maps on the graphics card, 1 to 65536; where they do not all fit, "
+                        "those in use take turns")
+            ->type_name("MIB")
+            ->capture_default_str()
+            ->check(between(1, 65536, "MiB"));
+    }
     if (groups & cellOption)
         parser.add_option("--cell", o.cell, "side of a heightfield cell, 0.1 to 50")
             ->type_name("METRES")

@@ -30,6 +30,8 @@ struct Options {
     ReflectionMethod method = ReflectionMethod::mem;
     MemVariant mem = MemVariant::ours;
     Quality quality = Quality::medium;
+    MapsOn mapsOn = MapsOn::automatic;
+    double gpuMapMegabytes = 512;      ///< 2^20 bytes, for reference maps on the graphics card
     double cell = 1;                   ///< metres, side of a heightfield cell
     double hour = 15;                  ///< local solar time
     glm::ivec2 resolution{1280, 720};  ///< pixels
@@ -44,6 +46,8 @@ struct Options {
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
 
+    /// --gpu-map-memory in bytes.
+    std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
     /// Frames that --frames or --seconds ask for; nothing where neither was given.
     std::optional<std::uint32_t> frameCount() const;
 };
@@ -66,8 +70,9 @@ enum OptionGroup : unsigned {
     displayOptions = 1u << 13,   ///< --offscreen --camera --stills
     /// --city --car --drive as files to write; the city to export is then CITY alone, the body --body.
     exportOptions = 1u << 14,
+    mapsOnOptions = 1u << 15,  ///< --maps-on --gpu-map-memory
 
-    reflectionOptions = methodOption | memOption | qualityOption | cellOption,
+    reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,
     mapOptions = cellOption | timeOption,  ///< what reference maps depend on
 };

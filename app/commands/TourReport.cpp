@@ -18,8 +18,13 @@ void TourReport::add(const FrameStats& stats) {
     frameMs_.push_back(stats.frameMs);
     reflectionMs_.push_back(stats.reflectionMs);
     mapsUpdated_ += stats.reflections.rebuilt;
-    mapBytes_ = std::max<std::uint64_t>(
-        mapBytes_, stats.reflections.localMapBytes + stats.reflections.referenceMapBytes);
+    const auto raise = [](std::uint64_t& most, std::size_t bytes) {
+        most = std::max<std::uint64_t>(most, bytes);
+    };
+    raise(localMapBytes_, stats.reflections.localMapBytes);
+    raise(referenceMapBytes_, stats.reflections.referenceMapBytes);
+    raise(referenceMapGpuBytes_, stats.reflections.referenceMapGpuBytes);
+    bytesPerTexel_ = std::max(bytesPerTexel_, stats.reflections.referenceBytesPerTexel);
 }
 
 void TourReport::finish(bool partial, std::ostream& out) const {
@@ -36,7 +41,13 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                             row("frame, ms", frame),
                             row("reflections, ms", reflection)})
             << "maps rebuilt a frame: " << fixed(mapsPerFrame, 1) << "\n"
-            << "memory of maps:       " << byteSize(static_cast<double>(mapBytes_)) << "\n";
+            << "local maps, GPU:      " << byteSize(static_cast<double>(localMapBytes_)) << "\n"
+            << "reference maps:       " << byteSize(static_cast<double>(referenceMapBytes_)) << ", "
+            << fixed(bytesPerTexel_, 2) << " bytes a texel for colour and distance; "
+            << (referenceMapGpuBytes_ > 0
+                    ? byteSize(static_cast<double>(referenceMapGpuBytes_)) + " on the GPU"
+                    : "in main memory")
+            << "\n";
     if (!options_.json) return;
     ResultFile results("tour", std::string(programVersion), renderer_);
     results.add({{"method", nameOf(options_.method)},
@@ -47,7 +58,11 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                  {"frame_ms", toJson(frame)},
                  {"reflection_ms", toJson(reflection)},
                  {"maps_updated_per_frame", mapsPerFrame},
-                 {"texture_bytes", mapBytes_}});
+                 {"maps_on", referenceMapGpuBytes_ > 0 ? "gpu" : "cpu"},
+                 {"texture_bytes", localMapBytes_ + referenceMapGpuBytes_},
+                 {"reference_map_bytes", referenceMapBytes_},
+                 {"reference_map_gpu_bytes", referenceMapGpuBytes_},
+                 {"reference_map_bytes_per_texel", bytesPerTexel_}});
     results.write(*options_.json, partial);
 }
 

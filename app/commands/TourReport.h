@@ -26,7 +26,8 @@ class TourReport {
     std::vector<double> frameMs_;
     std::vector<double> reflectionMs_;
     std::uint64_t mapsUpdated_ = 0;
-    std::uint64_t mapBytes_ = 0;
+    std::uint64_t localMapBytes_ = 0, referenceMapBytes_ = 0, referenceMapGpuBytes_ = 0;  ///< the most
+    double bytesPerTexel_ = 0;
 };
 
 }  // namespace app

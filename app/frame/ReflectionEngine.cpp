@@ -12,6 +12,8 @@
 
 #include "app/frame/VehicleShading.h"
 #include "reflection/gl/LocalMapAtlas.h"
+#include "reflection/gl/LocalMapPass.h"
+#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/local_map/MovingObjects.h"
 #include "reflection/local_map/PackedMips.h"
 #include "reflection/reference_maps/Selection.h"
@@ -82,6 +84,10 @@ reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int f
 }
 
 struct ReflectionEngine::Impl {
+    Impl(const reflection::GridTracer& gridTracer, std::span<const reflection::PackedReferenceMap> allMaps,
+         std::span<const vehicles::VehicleModel> allModels, const ReflectionSettings& wanted)
+        : tracer(gridTracer), maps(allMaps), models(allModels), settings(wanted) {}
+
     const reflection::GridTracer& tracer;
     std::span<const reflection::PackedReferenceMap> maps;
     std::span<const vehicles::VehicleModel> models;
@@ -92,6 +98,8 @@ struct ReflectionEngine::Impl {
     ReflectionCounters counters;
     reflection::LocalMapAtlas atlas;
     bool fixedMapBuilt = false;
+    bool software = reflection::softwareRenderer();
+    std::unique_ptr<reflection::LocalMapPass> gpu;  ///< made when first needed
 
     struct Scratch {
         reflection::LocalMapBuilder builder;
@@ -103,11 +111,17 @@ struct ReflectionEngine::Impl {
     std::vector<std::vector<reflection::Candidate>> candidates;
     std::vector<std::vector<reflection::MovingObject>> neighbours;
 
+    bool onGpu() const {
+        return settings.method == ReflectionMethod::mem && settings.variant == MemVariant::ours &&
+               (settings.mapsOn == MapsOn::gpu || (settings.mapsOn == MapsOn::automatic && !software));
+    }
+    void countReferenceMaps();
     void forget() {
         planner.reset();
         fixedMapBuilt = false;
     }
     void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
+    void buildOnGpu(std::span<const MapJob> jobs);
     void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
                           std::vector<reflection::MovingObject>& out);
     void buildFixedMap();
@@ -117,11 +131,10 @@ ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer,
                                    std::span<const reflection::PackedReferenceMap> maps,
                                    std::span<const vehicles::VehicleModel> models,
                                    const ReflectionSettings& settings)
-    : impl_(std::make_unique<Impl>(
-          Impl{tracer, maps, models, {}, settings, {}, {}, {}, {}, false, {}, {}, {}, {}, {}, {}})) {
+    : impl_(std::make_unique<Impl>(tracer, maps, models, settings)) {
     // The middle of the painted body: a little above half of the height.
     for (const vehicles::VehicleModel& model : models) impl_->centreHeights.push_back(0.55f * model.height);
-    for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
+    impl_->countReferenceMaps();
 }
 
 ReflectionEngine::~ReflectionEngine() = default;
@@ -129,7 +142,9 @@ ReflectionEngine::~ReflectionEngine() = default;
 void ReflectionEngine::configure(const ReflectionSettings& settings) {
     if (settings.method != impl_->settings.method || settings.variant != impl_->settings.variant)
         impl_->forget();
+    if (settings.gpuMapBytes != impl_->settings.gpuMapBytes) impl_->gpu.reset();
     impl_->settings = settings;
+    if (!impl_->onGpu()) impl_->gpu.reset();
 }
 
 const ReflectionSettings& ReflectionEngine::settings() const {
@@ -137,10 +152,14 @@ const ReflectionSettings& ReflectionEngine::settings() const {
 }
 
 void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMap> maps) {
+    impl_->gpu.reset();  // it reads the old ones
     impl_->maps = maps;
-    impl_->counters.referenceMapBytes = 0;
-    for (const reflection::PackedReferenceMap& map : maps) impl_->counters.referenceMapBytes += map.bytes();
+    impl_->countReferenceMaps();
     impl_->forget();
+}
+
+bool ReflectionEngine::buildsOnGpu() const {
+    return impl_->onGpu();
 }
 
 reflection::LocalMapTextures ReflectionEngine::textures() const {
@@ -148,6 +167,23 @@ reflection::LocalMapTextures ReflectionEngine::textures() const {
 }
 const ReflectionCounters& ReflectionEngine::counters() const {
     return impl_->counters;
+}
+
+void ReflectionEngine::Impl::countReferenceMaps() {
+    counters.referenceMapBytes = 0;
+    std::size_t texels = 0;
+    for (const reflection::PackedReferenceMap& map : maps) {
+        counters.referenceMapBytes += map.bytes();
+        texels += map.texelCount();
+    }
+    counters.referenceBytesPerTexel =
+        texels == 0 ? 0 : static_cast<double>(counters.referenceMapBytes) / static_cast<double>(texels);
+}
+
+void ReflectionEngine::Impl::buildOnGpu(std::span<const MapJob> jobs) {
+    std::vector<reflection::LocalMapJob> wanted(jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) wanted[i] = {jobs[i].slot, requests[i], neighbours[i]};
+    counters.rays = gpu->build(tracer, wanted, atlas);
 }
 
 void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const MapJob> jobs) {
@@ -168,10 +204,17 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
         const double heading = scene.vehicles[jobs[i].vehicle].heading;
         request.streetDirection = {std::cos(heading), std::sin(heading), 0};
         requests[i] = request;
-        built[i].resize(faceSize);
         neighbours[i].clear();
         if (settings.vehiclesInMaps) gatherNeighbours(scene, jobs[i], faceSize, neighbours[i]);
     });
+    if (onGpu()) {
+        if (!gpu) gpu = std::make_unique<reflection::LocalMapPass>(maps, settings.gpuMapBytes);
+        if (gpu->usable()) {
+            buildOnGpu(jobs);
+            return;
+        }
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) built[i].resize(requests[i].faceSize);
     std::atomic<std::uint64_t> rays{0};
     tbb::parallel_for(std::size_t{0}, 6 * jobs.size(), [&](std::size_t k) {
         const int face = static_cast<int>(k % 6);
@@ -271,6 +314,7 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     engine.counters.postponed = engine.plan.postponed;
     engine.counters.texels = engine.plan.texels;
     engine.counters.localMapBytes = engine.atlas.bytes();
+    engine.counters.referenceMapGpuBytes = engine.gpu ? engine.gpu->bytes() : 0;
     engine.counters.milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return engine.plan;

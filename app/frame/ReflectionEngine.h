@@ -24,6 +24,9 @@ struct ReflectionSettings {
     Quality quality = Quality::medium;
     bool everyFrame = false;     ///< rebuild every visible map every frame
     bool vehiclesInMaps = true;  ///< other vehicles appear in each vehicle's map
+    MapsOn mapsOn = MapsOn::automatic;
+    std::size_t gpuMapBytes =
+        std::size_t{512} << 20;  ///< for reference maps on the GPU at most; those in use take turns there
 };
 
 /// What the settings mean in numbers; kept in one place so that benches and panels show the same.
@@ -35,14 +38,16 @@ std::size_t candidateCount(const ReflectionSettings& settings);
 struct ReflectionCounters {
     std::uint32_t visible = 0, rebuilt = 0, fresh = 0, postponed = 0;
     std::uint64_t texels = 0, rays = 0;
-    std::size_t localMapBytes = 0;  ///< on the GPU
-    std::size_t referenceMapBytes = 0;
-    double milliseconds = 0;  ///< planning, building and uploading, CPU side
+    std::size_t localMapBytes = 0;         ///< on the GPU
+    std::size_t referenceMapBytes = 0;     ///< in main memory
+    std::size_t referenceMapGpuBytes = 0;  ///< on the GPU; 0 where local maps are made on the processor
+    double referenceBytesPerTexel = 0;     ///< colour and distance together; 0 without maps
+    double milliseconds = 0;               ///< planning, building and uploading, CPU side
 };
 
 /// Runs the reflections of a frame: plans which local maps to build, builds them on all cores (or has the
-/// scene drawn, for `rerender`), uploads them. Keeps references to tracer and maps. Needs a current GL 4.5
-/// context.
+/// scene drawn, for `rerender`), uploads them; or has the GPU build them, see MapsOn. Keeps references to
+/// tracer and maps. Needs a current GL 4.5 context.
 class ReflectionEngine {
   public:
     ReflectionEngine(const reflection::GridTracer& tracer,
@@ -62,6 +67,9 @@ class ReflectionEngine {
 
     reflection::LocalMapTextures textures() const;
     const ReflectionCounters& counters() const;
+
+    /// Whether local maps are made by the GPU with the present settings.
+    bool buildsOnGpu() const;
 
     /// The mesh of a vehicle's local map, as lines in face coordinates, for looking at: built anew.
     std::vector<reflection::LocalMapMesh::Quad> meshOf(const glm::dvec3& centre, int face, int faceSize,

@@ -27,6 +27,14 @@ enum class MemVariant : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 2> memVariantNames{"paper", "ours"};
 
+/// Where the method `mem` (ours) keeps reference maps and makes local maps.
+enum class MapsOn : std::uint8_t {
+    automatic,  ///< "auto": the graphics card; the processor where that draws as well
+    cpu,
+    gpu,
+};
+inline constexpr std::array<std::string_view, 3> mapsOnNames{"auto", "cpu", "gpu"};
+
 /// Detail and update budget of the reflections, and antialiasing and shadows of the drawing.
 enum class Quality : std::uint8_t { low, medium, high };
 inline constexpr std::array<std::string_view, 3> qualityNames{"low", "medium", "high"};

@@ -127,6 +127,9 @@ LocalMapPass::LocalMapPass(std::span<const PackedReferenceMap> maps, std::size_t
 
 LocalMapPass::~LocalMapPass() = default;
 
+bool LocalMapPass::usable() const {
+    return impl_->maps.places() > 0;
+}
 std::size_t LocalMapPass::bytes() const {
     return impl_->maps.bytes();
 }

@@ -49,6 +49,10 @@ class LocalMapPass {
     LocalMapPass(const LocalMapPass&) = delete;
     LocalMapPass& operator=(const LocalMapPass&) = delete;
 
+    /// False where the implementation does not allow a storage block as large as one of the maps: build them
+    /// on the processor then.
+    bool usable() const;
+
     /// Builds all maps. Where they ask for more reference maps than fit, in several batches, each once its
     /// maps are there; candidates beyond the places there are (the last) are left out. Returns the rays
     /// traced.

@@ -55,6 +55,8 @@ TEST(OptionsTest, defaultsAreThoseOfTheHelp) {
     EXPECT_EQ(o.mem, MemVariant::ours);
     EXPECT_EQ(o.resolution, glm::ivec2(1280, 720));
     EXPECT_EQ(o.cars, std::vector<std::uint32_t>{60});
+    EXPECT_EQ(o.mapsOn, MapsOn::automatic);
+    EXPECT_EQ(o.gpuMapBytes(), std::size_t{512} << 20);
     EXPECT_FALSE(o.frameCount());
 }
 
@@ -87,6 +89,10 @@ TEST(OptionsTest, everyOptionReachesItsField) {
                                                 "2",
                                                 "--fps",
                                                 "25",
+                                                "--maps-on",
+                                                "gpu",
+                                                "--gpu-map-memory",
+                                                "96",
                                                 "--offscreen"});
     const auto& o = std::get<Options>(outcome);
     EXPECT_EQ(o.city, "paper");
@@ -96,6 +102,8 @@ TEST(OptionsTest, everyOptionReachesItsField) {
     EXPECT_EQ(o.method, ReflectionMethod::fixed);
     EXPECT_EQ(o.mem, MemVariant::paper);
     EXPECT_EQ(o.quality, Quality::high);
+    EXPECT_EQ(o.mapsOn, MapsOn::gpu);
+    EXPECT_EQ(o.gpuMapBytes(), std::size_t{96} << 20);
     EXPECT_EQ(o.hour, 8.5);
     EXPECT_EQ(o.resolution, glm::ivec2(640, 360));
     EXPECT_EQ(o.out, "x");
@@ -119,6 +127,8 @@ TEST(OptionsTest, absurdNumbersAreRefusedAndNamed) {
         {"--resolution", {"1280", "1280x", "x720", "0x0", "15x720", "99999x720", "1280x720x3", "-5x5"}},
         {"--method", {"memm", ""}},
         {"--quality", {"ultra"}},
+        {"--maps-on", {"graphics", ""}},
+        {"--gpu-map-memory", {"0", "nan", "70000", "all"}},
     };
     for (const auto& [option, values] : absurd)
         for (const std::string& value : values) {
