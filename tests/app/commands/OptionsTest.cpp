@@ -246,10 +246,11 @@ TEST(OptionsTest, sizesHaveTheBoundsOfTheirCity) {
     }
     for (const char* size : {"200", "2000"})
         EXPECT_TRUE(std::holds_alternative<Options>(parse(tour(), {"--size", size}))) << size;
-    // A file may be cut smaller or larger; this source stands for one.
+    // A file may be cut smaller or larger; this source stands for one (__FILE__ may be relative).
+    const std::string thisFile = MIRRORSTREET_SOURCE_DIR "/tests/app/commands/OptionsTest.cpp";
     for (const char* size : {"100", "20000"})
-        EXPECT_TRUE(std::holds_alternative<Options>(parse(tour(), {__FILE__, "--size", size}))) << size;
-    EXPECT_NE(refused(tour(), {__FILE__, "--size", "99"}).second.find("100 to 20000"), std::string::npos);
+        EXPECT_TRUE(std::holds_alternative<Options>(parse(tour(), {thisFile, "--size", size}))) << size;
+    EXPECT_NE(refused(tour(), {thisFile, "--size", "99"}).second.find("100 to 20000"), std::string::npos);
 }
 
 TEST(ProgramTest, exitCodesTellUsageFromSuccess) {
