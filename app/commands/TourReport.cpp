@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <type_traits>
 #include <utility>
 
 #include "app/commands/Version.h"
@@ -11,59 +12,85 @@
 
 namespace app {
 
+namespace {
+
+std::string methodOf(const DriveSettings& settings) {
+    const std::string method(nameOf(settings.method));
+    return settings.method == ReflectionMethod::mem && settings.mem == MemVariant::paper ? method + " paper"
+                                                                                         : method;
+}
+
+}  // namespace
+
 TourReport::TourReport(const Options& options, std::string renderer)
     : options_(options), renderer_(std::move(renderer)) {}
 
-void TourReport::add(const FrameStats& stats) {
-    frameMs_.push_back(stats.frameMs);
-    reflectionMs_.push_back(stats.reflectionMs);
-    mapsUpdated_ += stats.reflections.rebuilt;
-    const auto raise = [](std::uint64_t& most, std::size_t bytes) {
-        most = std::max<std::uint64_t>(most, bytes);
+void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm::ivec2 size) {
+    auto stretch = std::find_if(stretches_.begin(), stretches_.end(), [&](const Stretch& known) {
+        return known.settings == settings && known.size == size;
+    });
+    if (stretch == stretches_.end()) {
+        stretch = stretches_.emplace(stretches_.end());
+        stretch->settings = settings;
+        stretch->size = size;
+    }
+    stretch->frameMs.push_back(stats.frameMs);
+    stretch->reflectionMs.push_back(stats.reflectionMs);
+    stretch->mapsUpdated += stats.reflections.rebuilt;
+    const auto raise = [](auto& most, auto value) {
+        most = std::max<std::remove_reference_t<decltype(most)>>(most, value);
     };
-    raise(localMapBytes_, stats.reflections.localMapBytes);
-    raise(referenceMapBytes_, stats.reflections.referenceMapBytes);
-    raise(referenceMapGpuBytes_, stats.reflections.referenceMapGpuBytes);
-    bytesPerTexel_ = std::max(bytesPerTexel_, stats.reflections.referenceBytesPerTexel);
+    raise(stretch->localMapBytes, stats.reflections.localMapBytes);
+    raise(stretch->referenceMapBytes, stats.reflections.referenceMapBytes);
+    raise(stretch->referenceMapGpuBytes, stats.reflections.referenceMapGpuBytes);
+    raise(stretch->bytesPerTexel, stats.reflections.referenceBytesPerTexel);
+    ++frames_;
 }
 
 void TourReport::finish(bool partial, std::ostream& out) const {
-    const Timing frame = timingOf(frameMs_);
-    const Timing reflection = timingOf(reflectionMs_);
-    const double mapsPerFrame =
-        frame.n == 0 ? 0 : static_cast<double>(mapsUpdated_) / static_cast<double>(frame.n);
-    const auto row = [](const std::string& name, const Timing& t) {
-        return std::vector<std::string>{name, fixed(t.min, 1), fixed(t.median, 1), fixed(t.max, 1)};
-    };
-    if (frame.n > 0)
-        out << formatTable({{std::to_string(frame.n) + " frames, " + std::string(nameOf(options_.method)),
-                             "min", "median", "max"},
-                            row("frame, ms", frame),
-                            row("reflections, ms", reflection)})
-            << "maps rebuilt a frame: " << fixed(mapsPerFrame, 1) << "\n"
-            << "local maps, GPU:      " << byteSize(static_cast<double>(localMapBytes_)) << "\n"
-            << "reference maps:       " << byteSize(static_cast<double>(referenceMapBytes_)) << ", "
-            << fixed(bytesPerTexel_, 2) << " bytes a texel for colour and distance; "
-            << (referenceMapGpuBytes_ > 0
-                    ? byteSize(static_cast<double>(referenceMapGpuBytes_)) + " on the GPU"
+    ResultFile results("tour", std::string(programVersion), renderer_);
+    std::vector<std::vector<std::string>> table{{"method, quality, cars, size, hour", "frames", "ms: min",
+                                                 "median", "max", "reflections", "maps a frame",
+                                                 "local maps"}};
+    const Stretch* most = nullptr;  // memory
+    for (const Stretch& stretch : stretches_) {
+        const DriveSettings& settings = stretch.settings;
+        const Timing frame = timingOf(stretch.frameMs);
+        const Timing reflection = timingOf(stretch.reflectionMs);
+        const double mapsPerFrame =
+            static_cast<double>(stretch.mapsUpdated) / static_cast<double>(stretch.frameMs.size());
+        table.push_back({methodOf(settings) + ", " + std::string(nameOf(settings.quality)) + ", " +
+                             std::to_string(settings.cars) + ", " + std::to_string(stretch.size.x) + "x" +
+                             std::to_string(stretch.size.y) + ", " + fixed(settings.hour, 1),
+                         std::to_string(frame.n), fixed(frame.min, 1), fixed(frame.median, 1),
+                         fixed(frame.max, 1), fixed(reflection.median, 1), fixed(mapsPerFrame, 1),
+                         byteSize(static_cast<double>(stretch.localMapBytes))});
+        results.add({{"method", methodOf(settings)},
+                     {"quality", nameOf(settings.quality)},
+                     {"city", options_.city},
+                     {"cars", settings.cars},
+                     {"width", stretch.size.x},
+                     {"height", stretch.size.y},
+                     {"hour", settings.hour},
+                     {"frame_ms", toJson(frame)},
+                     {"reflection_ms", toJson(reflection)},
+                     {"maps_updated_per_frame", mapsPerFrame},
+                     {"maps_on", stretch.referenceMapGpuBytes > 0 ? "gpu" : "cpu"},
+                     {"texture_bytes", stretch.localMapBytes + stretch.referenceMapGpuBytes},
+                     {"reference_map_bytes", stretch.referenceMapBytes},
+                     {"reference_map_gpu_bytes", stretch.referenceMapGpuBytes},
+                     {"reference_map_bytes_per_texel", stretch.bytesPerTexel}});
+        if (most == nullptr || stretch.referenceMapBytes >= most->referenceMapBytes) most = &stretch;
+    }
+    if (!stretches_.empty()) out << formatTable(table);
+    if (most != nullptr && most->referenceMapBytes > 0)
+        out << "reference maps: " << byteSize(static_cast<double>(most->referenceMapBytes)) << ", "
+            << fixed(most->bytesPerTexel, 2) << " bytes a texel for colour and distance; "
+            << (most->referenceMapGpuBytes > 0
+                    ? byteSize(static_cast<double>(most->referenceMapGpuBytes)) + " on the GPU"
                     : "in main memory")
             << "\n";
-    if (!options_.json) return;
-    ResultFile results("tour", std::string(programVersion), renderer_);
-    results.add({{"method", nameOf(options_.method)},
-                 {"city", options_.city},
-                 {"cars", options_.cars.front()},
-                 {"width", options_.resolution.x},
-                 {"height", options_.resolution.y},
-                 {"frame_ms", toJson(frame)},
-                 {"reflection_ms", toJson(reflection)},
-                 {"maps_updated_per_frame", mapsPerFrame},
-                 {"maps_on", referenceMapGpuBytes_ > 0 ? "gpu" : "cpu"},
-                 {"texture_bytes", localMapBytes_ + referenceMapGpuBytes_},
-                 {"reference_map_bytes", referenceMapBytes_},
-                 {"reference_map_gpu_bytes", referenceMapGpuBytes_},
-                 {"reference_map_bytes_per_texel", bytesPerTexel_}});
-    results.write(*options_.json, partial);
+    if (options_.json) results.write(*options_.json, partial);
 }
 
 }  // namespace app

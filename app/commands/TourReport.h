@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -9,25 +10,35 @@
 
 namespace app {
 
-/// Gathers what the frames of a drive took, for the table at its end and for `--json`.
+/// Gathers what the frames of a drive took, for the table at its end and for `--json`: a row for each way of
+/// drawing that was used, as a window's user may change it in between.
 class TourReport {
   public:
     TourReport(const Options& options, std::string renderer);
 
-    void add(const FrameStats& stats);
-    std::size_t frames() const { return frameMs_.size(); }
+    /// A frame, drawn in this way and size (pixels).
+    void add(const FrameStats& stats, const DriveSettings& settings, glm::ivec2 size);
+    std::size_t frames() const { return frames_; }
 
     /// Prints the table and writes the JSON file if one was asked for.
     void finish(bool partial, std::ostream& out) const;
 
   private:
+    /// Frames drawn in the same way, though others may have come between.
+    struct Stretch {
+        DriveSettings settings;
+        glm::ivec2 size{0};
+        std::vector<double> frameMs;
+        std::vector<double> reflectionMs;
+        std::uint64_t mapsUpdated = 0;
+        std::uint64_t localMapBytes = 0, referenceMapBytes = 0, referenceMapGpuBytes = 0;  ///< the most
+        double bytesPerTexel = 0;
+    };
+
     Options options_;
     std::string renderer_;
-    std::vector<double> frameMs_;
-    std::vector<double> reflectionMs_;
-    std::uint64_t mapsUpdated_ = 0;
-    std::uint64_t localMapBytes_ = 0, referenceMapBytes_ = 0, referenceMapGpuBytes_ = 0;  ///< the most
-    double bytesPerTexel_ = 0;
+    std::vector<Stretch> stretches_;  ///< in the order in which they began
+    std::size_t frames_ = 0;
 };
 
 }  // namespace app

@@ -249,7 +249,7 @@ void WindowTour::frame() {
     const bool screenshot = controls.actions.screenshot || choices_.screenshot;
 
     stats_ = drive_.draw(view(size), 0);
-    report_.add(stats_);
+    report_.add(stats_, drive_.settings(), size);
     if (frameMs_.size() == graphLength) frameMs_.erase(frameMs_.begin());
     frameMs_.push_back(static_cast<float>(stats_.frameMs));
     if (screenshot) takeScreenshot();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 namespace app {
@@ -16,6 +17,7 @@ constexpr double headingLag = 0.6;
 constexpr double steepest = 1.5;  ///< radians; short of straight up, where yaw loses its meaning
 constexpr double nearest = 2.5;   ///< metres from a followed vehicle's middle
 constexpr double farthest = 150;
+constexpr double lowestFlight = 0.3;  ///< metres above the ground: under a car's bumper, not under the road
 
 double wrapped(double angle) {
     return std::remainder(angle, 2 * pi);
@@ -57,7 +59,9 @@ glm::dvec3 smooth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
 
 }  // namespace
 
-CameraRig::CameraRig(std::span<const city::TourStop> tour, const city::Aabb& bounds) {
+CameraRig::CameraRig(std::span<const city::TourStop> tour, const city::Aabb& bounds)
+    : lowest_(bounds.empty() ? -std::numeric_limits<double>::infinity()
+                             : static_cast<double>(bounds.min.z) + lowestFlight) {
     for (const city::TourStop& stop : tour)
         if (tour_.empty() || stop.time > tour_.back().time) tour_.push_back(stop);
     if (hasTour()) {
@@ -165,6 +169,7 @@ void CameraRig::fly(double seconds, const CameraInput& input) {
     const glm::dvec3 right(std::sin(flyYaw_), -std::cos(flyYaw_), 0);
     const double step = flySpeed_ * (input.fast ? 4 : 1) * seconds;
     pose_.eye += step * (input.move.x * right + input.move.y * forward + input.move.z * glm::dvec3(0, 0, 1));
+    pose_.eye.z = std::max(pose_.eye.z, lowest_);
     pose_.target = pose_.eye + forward;
 }
 

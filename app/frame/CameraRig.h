@@ -18,7 +18,7 @@ namespace app {
 enum class CameraMode : std::uint8_t {
     tour,    ///< along the city's tour, round and round
     follow,  ///< behind and beside a vehicle, which the mouse circles
-    fly,     ///< free
+    fly,     ///< free, but not under the ground
 };
 
 inline constexpr std::array<std::string_view, 3> cameraModeNames{"tour", "follow", "fly"};
@@ -40,6 +40,7 @@ struct CameraPose {
 /// Where the camera is and how input moves it. Deterministic: the same calls give the same poses.
 class CameraRig {
   public:
+    /// `bounds`: of the city; its lowest point is the ground that flying stays above.
     /// A tour of fewer than two stops counts as none: the mode `tour` then follows a vehicle.
     CameraRig(std::span<const city::TourStop> tour, const city::Aabb& bounds);
 
@@ -80,6 +81,7 @@ class CameraRig {
     double flyYaw_ = 0;
     double flyPitch_ = 0;
     double flySpeed_ = 8;  ///< metres per second
+    double lowest_;        ///< height below which flying does not go
 };
 
 }  // namespace app

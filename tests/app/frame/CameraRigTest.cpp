@@ -140,6 +140,20 @@ TEST(CameraRigTest, flyingStartsWhereTheCameraIsAndGoesWhereItLooks) {
     EXPECT_GT(rig.pose().eye.z, below.z + 1);
 }
 
+TEST(CameraRigTest, flyingStaysAboveTheGround) {
+    CameraRig rig(threeStops, bounds);
+    rig.setMode(CameraMode::fly, {});
+    rig.update(0, {}, input({0, 0, 0}, {0, -1}));
+    for (int i = 0; i < 50; ++i) {
+        rig.update(0.1, {}, input({0, i % 2 ? 1.0 : 0.0, -1}));
+        ASSERT_GT(rig.pose().eye.z, bounds.min.z);
+    }
+    EXPECT_LT(rig.pose().eye.z, bounds.min.z + 1);
+    EXPECT_NEAR(glm::distance(rig.pose().eye, rig.pose().target), 1, 1e-9) << "it looks where it looked";
+    rig.update(1, {}, input({0, 0, 1}));
+    EXPECT_GT(rig.pose().eye.z, bounds.min.z + 5);
+}
+
 TEST(CameraRigTest, lookingStopsShortOfTheZenith) {
     CameraRig rig(threeStops, bounds);
     rig.setMode(CameraMode::fly, {});
