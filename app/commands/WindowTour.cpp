@@ -234,8 +234,9 @@ void WindowTour::frame() {
     obey(controls);
     const double seconds = std::min(watch_.lap() / 1000, longestStep);
     const glm::ivec2 size = window_.framebufferSize();
-    if (size.x < 1 || size.y < 1) {
-        std::this_thread::sleep_for(50ms);  // minimised
+    // A minimised window keeps its size on some systems and has none on others.
+    if (size.x < 1 || size.y < 1 || window_.minimised()) {
+        std::this_thread::sleep_for(50ms);
         return;
     }
     if (!choices_.paused) {
@@ -273,7 +274,10 @@ int runWindowTour(const Options& options) {
     while (ready && !window.closeRequested() && !interrupted() &&
            (!frames || tour.report().frames() < *frames))
         tour.frame();
-    if (!ready) spdlog::warn("ended before the first picture: the reference maps that are finished are kept");
+    if (!ready)
+        spdlog::warn("ended before the first picture: the reference maps that are finished are kept");
+    else if (interrupted())
+        spdlog::warn("interrupted after {} frames", tour.report().frames());
     tour.report().finish(!ready || interrupted(), std::cout);
     return interrupted() ? exitFailed : exitOk;
 }

@@ -137,6 +137,10 @@ glm::ivec2 Window::framebufferSize() const {
     return size;
 }
 
+bool Window::minimised() const {
+    return glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) != 0;
+}
+
 glm::dvec2 Window::cursor() const {
     glm::dvec2 at(0);
     glfwGetCursorPos(impl_->window, &at.x, &at.y);

@@ -52,7 +52,8 @@ class Window {
 
     bool closeRequested() const;
     void requestClose();
-    glm::ivec2 framebufferSize() const;  ///< pixels; (0, 0) while minimised
+    glm::ivec2 framebufferSize() const;  ///< pixels; may be (0, 0) while minimised
+    bool minimised() const;              ///< nobody sees what is drawn
     glm::dvec2 cursor() const;           ///< screen coordinates from the top left
     bool keyDown(int key) const;
     bool buttonDown(int button) const;
