@@ -210,8 +210,7 @@ TEST(HouseTest, noFolderWithoutAnIdea) {
 
 TEST(HouseTest, everyHeaderOpensWithPragmaOnce) {
     for (const SourceFile& file : sourceFiles())
-        // Highway's -inl.h files are included once for each instruction set.
-        if (file.path.ends_with(".h") && !file.path.ends_with("-inl.h")) {
+        if (file.path.ends_with(".h")) {
             EXPECT_TRUE(file.text.starts_with("#pragma once\n")) << file.path;
         }
 }

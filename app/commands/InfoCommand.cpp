@@ -18,6 +18,7 @@
 #include "app/commands/Version.h"
 #include "app/display/OffscreenContext.h"
 #include "app/display/OffscreenTarget.h"
+#include "app/frame/Lighting.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
 
@@ -67,8 +68,26 @@ void printOpenGl() {
     print("OpenGL",
           {{"renderer", context.renderer()},
            {"version", context.version()},
-           {"software", context.software() ? "yes: expect a fraction of a graphics card's speed" : "no"}});
+           {"software", context.software() ? "yes: expect a fraction of a graphics card's speed" : "no"},
+           {"local maps made by", context.software()
+                                      ? "the processor (--maps-on gpu asks for OpenGL)"
+                                      : "the graphics card (--maps-on cpu asks for the processor)"}});
     print("limits", contextLimits());
+}
+
+/// What the cache holds of them for the default light.
+std::string referenceMapsOf(const city::CityModel& city, const Options& options) {
+    PreparationOptions preparation;
+    preparation.cell = static_cast<float>(options.cell);
+    const std::optional<CachedReflections> cached = cachedReflections(
+        city, lightingAt(options.hour, city.frame ? city.frame->latitude() : 50), preparation);
+    if (!cached) return "none in the cache yet (bake, or the first tour, makes them)";
+    std::string text = std::to_string(cached->finished) + " of " + std::to_string(cached->placed) +
+                       " in the cache, for " + fixed(100 * cached->coverage, 1) + "% of what is seen";
+    if (cached->bytesPerTexel > 0)
+        text += "; " + byteSize(static_cast<double>(cached->bytes)) + ", " + fixed(cached->bytesPerTexel, 2) +
+                " bytes a texel for colour and distance, in main memory as on a graphics card";
+    return text;
 }
 
 void printCity(const Options& options) {
@@ -104,6 +123,7 @@ void printCity(const Options& options) {
     std::ostringstream hash;
     hash << std::hex << std::setw(16) << std::setfill('0') << city.contentHash();
     rows.emplace_back("content hash", hash.str());
+    rows.emplace_back("reference maps", referenceMapsOf(city, options));
     print(city.name.empty() ? options.city : city.name, rows);
     for (const std::string& note : city.notes) std::cout << "  note: " << note << "\n";
 }

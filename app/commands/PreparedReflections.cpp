@@ -15,6 +15,7 @@
 #include "app/report/Progress.h"
 #include "city/model/CityHeightfield.h"
 #include "reflection/gl/BakeReferenceMaps.h"
+#include "reflection/reference_maps/PackedFile.h"
 #include "reflection/reference_maps/Store.h"
 
 namespace app {
@@ -61,6 +62,14 @@ std::string fileNameOf(const std::string& name) {
     return safe.empty() ? "city" : safe;
 }
 
+reflection::ReferenceMapStore storeOf(const city::CityModel& city, const Lighting& lighting,
+                                      const PreparationOptions& options) {
+    const std::uint64_t hash = contentHash(city, lighting, options);
+    std::ostringstream name;
+    name << fileNameOf(city.name) << '-' << std::hex << std::setw(16) << std::setfill('0') << hash;
+    return {(options.cache.empty() ? cacheFolder() : options.cache) / name.str(), hash};
+}
+
 }  // namespace
 
 std::vector<glm::vec3> drivingPositions(const city::CityModel& city, float step) {
@@ -90,17 +99,37 @@ std::filesystem::path cacheFolder() {
     return std::filesystem::temp_directory_path() / "mirrorstreet-cache";
 }
 
+std::optional<CachedReflections> cachedReflections(const city::CityModel& city, const Lighting& lighting,
+                                                   const PreparationOptions& options) {
+    const reflection::ReferenceMapStore store = storeOf(city, lighting, options);
+    const std::optional<reflection::ReferenceMapStore::Plan> plan = store.loadPlan();
+    if (!plan) return std::nullopt;
+    CachedReflections cached;
+    cached.placed = plan->positions.size();
+    cached.coverage = plan->coverage;
+    for (std::size_t i = 0; i < cached.placed; ++i) {
+        const auto key = reflection::packedFileKey(store.file(i), store.contentHash());
+        if (!key) continue;
+        ++cached.finished;
+        if (cached.bytesPerTexel > 0) continue;
+        // All are of one size.
+        if (const auto map = reflection::loadPacked(store.packedFile(i), *key)) {
+            cached.bytes = map->bytes();
+            cached.bytesPerTexel = static_cast<double>(map->bytes()) / static_cast<double>(map->texelCount());
+        }
+    }
+    cached.bytes *= cached.finished;
+    return cached;
+}
+
 PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting,
                                        reflection::SceneDrawer& drawer, const PreparationOptions& options) {
     PreparedReflections prepared;
     prepared.field = std::make_unique<city::Heightfield>(city::cityHeightfield(city, options.cell));
     prepared.tracer = std::make_unique<reflection::GridTracer>(*prepared.field);
 
-    const std::uint64_t hash = contentHash(city, lighting, options);
-    std::ostringstream name;
-    name << fileNameOf(city.name) << '-' << std::hex << std::setw(16) << std::setfill('0') << hash;
-    prepared.folder = (options.cache.empty() ? cacheFolder() : options.cache) / name.str();
-    const reflection::ReferenceMapStore store(prepared.folder, hash);
+    const reflection::ReferenceMapStore store = storeOf(city, lighting, options);
+    prepared.folder = store.folder();
 
     std::optional<reflection::ReferenceMapStore::Plan> plan;
     bool useCache = options.useCache;

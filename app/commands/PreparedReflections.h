@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/frame/Lighting.h"
@@ -51,6 +52,18 @@ std::vector<glm::vec3> drivingPositions(const city::CityModel& city, float step)
 /// Folder in which a user's caches belong: $MIRRORSTREET_CACHE, else $XDG_CACHE_HOME/mirrorstreet, else
 /// ~/.cache/mirrorstreet.
 std::filesystem::path cacheFolder();
+
+/// What the cache holds of a city's reference maps.
+struct CachedReflections {
+    std::size_t placed = 0, finished = 0;  ///< maps
+    double coverage = 0;                   ///< as in PreparedReflections, once all are finished
+    std::size_t bytes = 0;                 ///< of the finished ones, packed as they are used
+    double bytesPerTexel = 0;              ///< colour and distance together; 0 where none is finished
+};
+
+/// Looks without drawing anything; nothing where no places were chosen yet for this light and these options.
+std::optional<CachedReflections> cachedReflections(const city::CityModel& city, const Lighting& lighting,
+                                                   const PreparationOptions& options);
 
 /// Places and renders the city's reference maps, or takes them from the cache. `drawer` must be prepared with
 /// the lighting and no vehicles. Says on stderr which damaged cache entries it rebuilt.

@@ -12,6 +12,7 @@
 #include "reflection/gl/LocalMapTextures.h"
 #include "reflection/gl/SceneDrawer.h"
 #include "reflection/local_map/LocalMapBuilder.h"
+#include "reflection/local_map/PackedMips.h"
 #include "reflection/reference_maps/PackedReferenceMap.h"
 #include "reflection/tracing/GridTracer.h"
 #include "vehicles/models/VehicleModel.h"
@@ -67,6 +68,9 @@ class ReflectionEngine {
 
     reflection::LocalMapTextures textures() const;
     const ReflectionCounters& counters() const;
+
+    /// Reads a local map back from the GPU: for tests and measurements, since it waits.
+    reflection::PackedMips mapIn(reflection::LocalMapSlot slot) const;
 
     /// Whether local maps are made by the GPU with the present settings.
     bool buildsOnGpu() const;

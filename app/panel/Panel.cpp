@@ -175,6 +175,7 @@ void Panel::Impl::drawCounters(const PanelNews& news) {
     row("reflections, ms", "%.2f", news.reflections.milliseconds);
     row("local maps, MiB", "%.1f", static_cast<double>(news.reflections.localMapBytes) / mebi);
     row("reference maps, MiB", "%.1f", static_cast<double>(news.reflections.referenceMapBytes) / mebi);
+    row("  on the GPU", "%.1f", static_cast<double>(news.reflections.referenceMapGpuBytes) / mebi);
     row("triangles drawn", "%.0f", static_cast<double>(news.drawn.triangles));
     row("draw calls", "%.0f", news.drawn.drawCalls);
     row("chunks culled", "%.0f", news.drawn.chunksCulled);

@@ -2,8 +2,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-/// Four levels of a cube map array of R11F_G11F_B10F, bound as raw words: rounding is then ours (PackedMips.cpp),
-/// not the implementation's.
+/// Four levels of a cube map array of R11F_G11F_B10F, seen as words: rounding is then ours (PackedMips.cpp), not
+/// the implementation's.
 layout(r32ui, binding = 0) writeonly restrict uniform uimageCubeArray level0;
 layout(r32ui, binding = 1) writeonly restrict uniform uimageCubeArray level1;
 layout(r32ui, binding = 2) writeonly restrict uniform uimageCubeArray level2;

@@ -8,8 +8,7 @@ const uint nearnessExponentBias = 127u - 13u;
 const uint sumMantissaShift = 18u;
 const uint sumExponentBias = 127u - 16u;
 const float skyDepth = 8192.0;
-const float infinity = uintBitsToFloat(0x7f800000u);
-const float unreached = 3.0e38;
+const float infinity = 3.0e38;  // finite: GLSL promises nothing for the real one
 
 layout(std430, binding = 0) readonly restrict buffer ReferenceMaps { uint packedMaps[]; };
 
@@ -39,9 +38,9 @@ FacePoint toFace(vec3 p, int faceSize) {
     float major = max(max(a.x, max(a.y, a.z)), 1e-30);
     float value = isX ? p.x : isY ? p.y : p.z;
     bool negative = value < 0.0;
-    float sign = negative ? -1.0 : 1.0;
-    float s = isX ? -p.z * sign : isY ? p.x : p.x * sign;
-    float t = isY ? p.z * sign : -p.y;
+    float flip = negative ? -1.0 : 1.0;
+    float s = isX ? -p.z * flip : isY ? p.x : p.x * flip;
+    float t = isY ? p.z * flip : -p.y;
     float size = 0.5 * float(faceSize);
     return FacePoint((isX ? 0 : isY ? 2 : 4) + int(negative), vec2(s, t) * (size / major) + size, major);
 }
@@ -78,10 +77,7 @@ struct Probe {
     int chromaBlock;
 };
 
-const float tornShare = 0.3;
-
-/// Brightness is bilinear. So is nearness on a surface; across an edge it is the nearest texel's. The block of
-/// the nearest texel for chroma.
+/// Bilinear in nearness and brightness; the block of the nearest texel for chroma.
 Probe probe(MapView map, vec3 point) {
     FacePoint p = toFace(point, map.faceSize);
     vec2 uv = clamp(p.uv + 0.5, vec2(0.0), vec2(float(map.faceSize) + 0.9999));
@@ -90,16 +86,11 @@ Probe probe(MapView map, vec3 point) {
     int m = map.faceSize + 2;
     int index = (p.face * m + at.y) * m + at.x;
     uvec2 upper = fetchPair(map, uint(index)), lower = fetchPair(map, uint(index + m));
-    vec2 above = nearnessOf(upper), below = nearnessOf(lower);
-    vec2 most = max(above, below), least = min(above, below);
-    bool torn = min(least.x, least.y) < max(most.x, most.y) * (1.0 - tornShare);
-    vec2 row = f.y >= 0.5 ? below : above;
-    vec2 mixed = mix(above, below, f.y);
-    float nearness = torn ? (f.x >= 0.5 ? row.y : row.x) : mix(mixed.x, mixed.y, f.x);
+    vec2 nearness = mix(nearnessOf(upper), nearnessOf(lower), f.y);
     vec2 sum = mix(sumOf(upper), sumOf(lower), f.y);
     int rows = m / 2;
     ivec2 block = min(ivec2(uv + 0.5) >> ivec2(2, 1), ivec2(map.chromaColumns, rows) - 1);
-    return Probe(p.depth * nearness - 1.0, mix(sum.x, sum.y, f.x),
+    return Probe(p.depth * mix(nearness.x, nearness.y, f.x) - 1.0, mix(sum.x, sum.y, f.x),
                  (p.face * rows + block.y) * map.chromaColumns + block.x);
 }
 
@@ -110,30 +101,20 @@ vec3 colourOf(MapView map, float sum, int chromaBlock) {
     return sum * map.radianceScale * vec3(red, max(0.0, 1.0 - red - blue), blue);
 }
 
-/// A point and the plane {x : plane . x = 1} around it, seen from the local map's centre.
-struct SurfacePatch {
-    vec3 point;
-    vec3 plane;
-};
-
-/// How unlike the local map's own detail a map sees a patch: DetailOrder.cpp's orderByDetail.
-float misfitOf(MapView map, SurfacePatch around) {
-    const float grazing = 0.01;
-    vec3 apart = around.point - map.offset;
-    float squared = max(dot(around.point, around.point), 1e-30) / max(dot(apart, apart), 1e-30);
-    float along = (1.0 - dot(around.plane, map.offset)) * squared;
-    float across = sqrt(squared);
-    return along > grazing ? max(max(along, across), 1.0 / min(along, across))
-                           : (1.0 / grazing) * (1.0 + 1.0 / squared);
+/// How unlike the local map's own scale a map sees a point: ReferenceLookup.cpp's orderByScale.
+float misfitOf(MapView map, vec3 point) {
+    vec3 apart = point - map.offset;
+    float own = max(dot(point, point), 1e-30), squared = max(dot(apart, apart), 1e-30);
+    return squared > own ? squared / own : own / squared;
 }
 
 /// The candidate that follows the one of this misfit and number in the order by misfit, then number. Found anew
 /// each time instead of sorted once: most texels ask one candidate, and a sorted list would have to live in memory.
-uint nextByDetail(uint firstView, uint count, SurfacePatch seen, inout float misfit, uint last) {
+uint nextByScale(uint firstView, uint count, vec3 point, inout float misfit, uint last) {
     uint best = count;
     float bestMisfit = infinity;
     for (uint k = 0u; k < count; ++k) {
-        float m = misfitOf(mapViews[firstView + k], seen);
+        float m = misfitOf(mapViews[firstView + k], point);
         bool follows = m > misfit || (m == misfit && (last == count || k > last));
         if (follows && (m < bestMisfit || best == count)) {
             best = k;
@@ -145,16 +126,16 @@ uint nextByDetail(uint firstView, uint count, SurfacePatch seen, inout float mis
 }
 
 /// The colour of one texel. `direction`: of the texel's ray; `start`: its heightfield hit, 1 / reciprocal;
-/// `seen`: around the middle one of the texels that share an order. Without candidates black sky.
-vec3 lookUpRefined(vec3 direction, float start, SurfacePatch seen, uint firstView, uint count, int lookups,
+/// `orderPoint`: where the middle one of the texels that share an order starts. Without candidates black sky.
+vec3 lookUpRefined(vec3 direction, float start, vec3 orderPoint, uint firstView, uint count, int lookups,
                    float agreement, out float depth) {
     float dd = dot(direction, direction);
-    float bestError = unreached, bestDepth = count > 0u ? start : infinity;
+    float bestError = infinity, bestDepth = count > 0u ? start : infinity;
     vec3 colour = vec3(0.0);
     float misfit = -1.0;
     uint k = count;
     for (uint asked = 0u; asked < count; ++asked) {
-        k = nextByDetail(firstView, count, seen, misfit, k);
+        k = nextByScale(firstView, count, orderPoint, misfit, k);
         if (k >= count) break;
         MapView map = mapViews[firstView + k];
         float dc = dot(direction, map.offset);
@@ -163,6 +144,7 @@ vec3 lookUpRefined(vec3 direction, float start, SurfacePatch seen, uint firstVie
         float qa = at.disagreement, sum = at.sum, error = abs(qa), candidateDepth = ta;
         int block = at.chromaBlock;
         float tb = ta, qb = qa;
+        // Each texel ends for itself; on the processor a vector's texels go on until the last has ended.
         for (int step = 1; step < lookups && error > agreement; ++step) {
             float next;
             if (step == 1) {

@@ -18,6 +18,7 @@ constexpr std::size_t texelBytes = 4;
 struct LocalMapAtlas::Impl {
     struct SizeClass {
         gl::Texture array;
+        gl::Texture words;  ///< a view of it
         int layers = 0;
     };
     std::array<SizeClass, localMapFaceSizes.size()> classes;
@@ -70,6 +71,7 @@ void LocalMapAtlas::reserve(int sizeClass, int layers) {
         }
     }
     c.array = std::move(larger);
+    c.words = gl::Texture::view(GL_TEXTURE_CUBE_MAP_ARRAY, c.array.name(), GL_R32UI, 0, levels, 0, 6 * grown);
     c.layers = grown;
 }
 
@@ -120,6 +122,10 @@ LocalMapTextures LocalMapAtlas::textures() const {
     for (std::size_t c = 0; c < impl_->classes.size(); ++c)
         names.cubeArrays[c] = impl_->classes[c].array.name();
     return names;
+}
+
+std::uint32_t LocalMapAtlas::wordArray(int sizeClass) const {
+    return impl_->classes[static_cast<std::size_t>(sizeClass)].words.name();
 }
 
 std::size_t LocalMapAtlas::bytes() const {

@@ -35,6 +35,9 @@ class LocalMapAtlas {
     void finishDrawn(LocalMapSlot slot);
 
     LocalMapTextures textures() const;
+    /// GL name of the same texels as a GL_R32UI cube map array, for shaders that write them whole; 0 where
+    /// the class is empty.
+    std::uint32_t wordArray(int sizeClass) const;
     std::size_t bytes() const;  ///< on the GPU, mipmaps included
 
   private:

@@ -248,7 +248,7 @@ void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, con
         const auto sizeClass = static_cast<std::size_t>(batch[i]->slot.sizeClass);
         const int faceSize = localMapFaceSizes[sizeClass];
         if (i == 0 || batch[i - 1]->slot.sizeClass != batch[i]->slot.sizeClass)
-            runs.push_back({atlas.textures().cubeArrays[sizeClass], faceSize, 6 * i, 0, meanCount});
+            runs.push_back({atlas.wordArray(batch[i]->slot.sizeClass), faceSize, 6 * i, 0, meanCount});
         runs.back().jobCount += 6;
         meanCount += 6 * texelsOf(faceSize / groupSize);
     }

@@ -9,7 +9,7 @@
 namespace reflection {
 
 bool softwareRenderer() {
-    constexpr std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "swrast", "SWR"};
+    constexpr std::array<std::string_view, 5> names{"llvmpipe", "softpipe", "swrast", "SWR", "SwiftShader"};
     const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     const std::string_view renderer = text != nullptr ? text : "";
     return std::ranges::any_of(names,
