@@ -210,7 +210,8 @@ TEST(HouseTest, noFolderWithoutAnIdea) {
 
 TEST(HouseTest, everyHeaderOpensWithPragmaOnce) {
     for (const SourceFile& file : sourceFiles())
-        if (file.path.ends_with(".h")) {
+        // Highway's -inl.h files are included once for each instruction set.
+        if (file.path.ends_with(".h") && !file.path.ends_with("-inl.h")) {
             EXPECT_TRUE(file.text.starts_with("#pragma once\n")) << file.path;
         }
 }

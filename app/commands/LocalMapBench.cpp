@@ -8,6 +8,7 @@
 #include <random>
 
 #include "app/frame/ReflectionEngine.h"
+#include "app/frame/SkyMaps.h"
 #include "app/frame/ToneMap.h"
 #include "app/report/Progress.h"
 #include "reflection/gl/Finish.h"
@@ -75,9 +76,11 @@ class MethodRun {
     const std::string& name() const { return name_; }
 
     /// One map, in the slot of the atlas.
-    void build(const PreparedReflections& prepared, const Place& place, int faceSize,
+    void build(const PreparedReflections& prepared, const Place& place, const reflection::LocalMap& sky,
                reflection::LocalMapAtlas& atlas, reflection::LocalMapSlot slot) {
+        const int faceSize = sky.faceSize;
         reflection::LocalMapRequest request = requestFor(settings_, faceSize);
+        request.lookup.sky = &sky;
         request.centre = place.centre;
         request.streetDirection = place.direction;
         const std::vector<reflection::Candidate> candidates =
@@ -144,6 +147,8 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
                                           reflection::SceneDrawer& drawer,
                                           const LocalMapBenchOptions& options) {
     const int n = options.faceSize;
+    SkyMaps skyMaps;
+    const reflection::LocalMap& sky = skyMaps.of(options.lighting, n);
     std::vector<MethodRun> methods;
     const auto add = [&](const char* name, ReflectionMethod method, MemVariant variant, Quality quality) {
         methods.emplace_back(name, ReflectionSettings{method, variant, quality, true, false});
@@ -228,7 +233,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
             }
             for (std::size_t m = 0; m < methods.size(); ++m) {
                 watch.lap();
-                methods[m].build(prepared, place, n, atlas, slotOf(m));
+                methods[m].build(prepared, place, sky, atlas, slotOf(m));
                 reflection::finishGpu();
                 const double time = watch.lap();
                 if (round > 0) {

@@ -15,6 +15,8 @@ struct Lighting {
     float turbidity = 3;
     float exposure = 1;
     bool lampsLit = false;  ///< street lamps and head lamps on
+
+    bool operator==(const Lighting&) const = default;
 };
 
 /// Lighting at an hour of a clear day, 0..24 local solar time, at a latitude (degrees) in mid June. Finite

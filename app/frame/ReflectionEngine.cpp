@@ -4,12 +4,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "app/frame/SkyMaps.h"
 #include "app/frame/VehicleShading.h"
 #include "reflection/gl/LocalMapAtlas.h"
 #include "reflection/gl/LocalMapPass.h"
@@ -97,6 +99,7 @@ struct ReflectionEngine::Impl {
     ReflectionPlan plan;
     ReflectionCounters counters;
     reflection::LocalMapAtlas atlas;
+    SkyMaps skyMaps;
     bool fixedMapBuilt = false;
     bool software = reflection::softwareRenderer();
     std::unique_ptr<reflection::LocalMapPass> gpu;  ///< made when first needed
@@ -197,6 +200,11 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
     requests.resize(jobs.size());
     candidates.resize(jobs.size());
     neighbours.resize(std::max(neighbours.size(), jobs.size()));
+    std::array<const reflection::LocalMap*, reflection::localMapFaceSizes.size()> skies{};
+    for (const MapJob& job : jobs) {
+        const auto size = static_cast<std::size_t>(job.slot.sizeClass);
+        skies[size] = &skyMaps.of(scene.lighting, reflection::localMapFaceSizes[size]);
+    }
     tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
         const int faceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(jobs[i].slot.sizeClass)];
         reflection::LocalMapRequest request = requestFor(settings, faceSize);
@@ -206,6 +214,7 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
                 ? reflection::selectCandidates(maps, request.centre, tracer, candidateCount(settings))
                 : reflection::selectNearestTwo(maps, request.centre);
         request.candidates = candidates[i];
+        request.lookup.sky = skies[static_cast<std::size_t>(jobs[i].slot.sizeClass)];
         const double heading = scene.vehicles[jobs[i].vehicle].heading;
         request.streetDirection = {std::cos(heading), std::sin(heading), 0};
         requests[i] = request;

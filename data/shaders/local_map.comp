@@ -28,14 +28,33 @@ float startOf(uint first, ivec2 texel) {
     return min(1.0 / max(reciprocals[first + uint(texel.y * faceSize + texel.x)], 1.0 / skyDepth), skyDepth);
 }
 
+float reciprocalOf(uint first, int x, int y) { return reciprocals[first + uint(y * faceSize + x)]; }
+
+/// DetailOrder.cpp's patchAround.
+SurfacePatch patchAround(uint first, int face, ivec2 at) {
+    vec2 st = (vec2(at) + 0.5) * (2.0 / float(faceSize)) - 1.0;
+    ivec2 before = max(at - 1, 0), after = min(at + 1, faceSize - 1);
+    vec2 apart = vec2(max(after - before, 1)) * (2.0 / float(faceSize));
+    vec2 slope = vec2(reciprocalOf(first, after.x, at.y) - reciprocalOf(first, before.x, at.y),
+                      reciprocalOf(first, at.x, after.y) - reciprocalOf(first, at.x, before.y)) / apart;
+    float own = reciprocalOf(first, at.x, at.y);
+    // A face's directions are linear in its coordinates: major + s sAxis + t tAxis.
+    vec2 middle = vec2(0.5 * float(faceSize));
+    vec3 major = cubeDirection(face, middle);
+    vec3 sAxis = cubeDirection(face, middle + vec2(middle.x, 0.0)) - major;
+    vec3 tAxis = cubeDirection(face, middle + vec2(0.0, middle.y)) - major;
+    return SurfacePatch((major + st.x * sAxis + st.y * tAxis) / max(own, 1.0 / skyDepth),
+                        (own - dot(st, slope)) * major + slope.x * sAxis + slope.y * tAxis);
+}
+
 void main() {
     FaceJob job = faceJobs[uint(firstJob) + gl_WorkGroupID.z];
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    // Eight neighbours in a row share an order, as in a vector of the processor's.
-    ivec2 middle = ivec2((texel.x & ~7) + 4, texel.y);
+    // Sixteen neighbours in a row share an order.
+    ivec2 middle = ivec2(min((texel.x & ~15) + 8, faceSize - 1), texel.y);
     float depth;
     vec3 colour = lookUpRefined(cubeDirection(job.face, vec2(texel) + 0.5), startOf(job.start, texel),
-                                startOf(job.start, middle) * cubeDirection(job.face, vec2(middle) + 0.5),
+                                patchAround(job.start, job.face, middle),
                                 job.firstView, job.viewCount, job.lookups, job.agreement, depth);
     if (all(greaterThanEqual(texel, job.overlayBox.xy)) && all(lessThan(texel, job.overlayBox.zw))) {
         ivec2 at = texel - job.overlayBox.xy;

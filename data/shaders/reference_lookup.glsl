@@ -77,7 +77,10 @@ struct Probe {
     int chromaBlock;
 };
 
-/// Bilinear in nearness and brightness; the block of the nearest texel for chroma.
+const float tornShare = 0.3;
+
+/// Brightness is bilinear. So is nearness on a surface; across an edge it is the nearest texel's. The block of
+/// the nearest texel for chroma.
 Probe probe(MapView map, vec3 point) {
     FacePoint p = toFace(point, map.faceSize);
     vec2 uv = clamp(p.uv + 0.5, vec2(0.0), vec2(float(map.faceSize) + 0.9999));
@@ -86,11 +89,16 @@ Probe probe(MapView map, vec3 point) {
     int m = map.faceSize + 2;
     int index = (p.face * m + at.y) * m + at.x;
     uvec2 upper = fetchPair(map, uint(index)), lower = fetchPair(map, uint(index + m));
-    vec2 nearness = mix(nearnessOf(upper), nearnessOf(lower), f.y);
+    vec2 above = nearnessOf(upper), below = nearnessOf(lower);
+    vec2 most = max(above, below), least = min(above, below);
+    bool torn = min(least.x, least.y) < max(most.x, most.y) * (1.0 - tornShare);
+    vec2 row = f.y >= 0.5 ? below : above;
+    vec2 mixed = mix(above, below, f.y);
+    float nearness = torn ? (f.x >= 0.5 ? row.y : row.x) : mix(mixed.x, mixed.y, f.x);
     vec2 sum = mix(sumOf(upper), sumOf(lower), f.y);
     int rows = m / 2;
     ivec2 block = min(ivec2(uv + 0.5) >> ivec2(2, 1), ivec2(map.chromaColumns, rows) - 1);
-    return Probe(p.depth * mix(nearness.x, nearness.y, f.x) - 1.0, mix(sum.x, sum.y, f.x),
+    return Probe(p.depth * nearness - 1.0, mix(sum.x, sum.y, f.x),
                  (p.face * rows + block.y) * map.chromaColumns + block.x);
 }
 
@@ -101,20 +109,30 @@ vec3 colourOf(MapView map, float sum, int chromaBlock) {
     return sum * map.radianceScale * vec3(red, max(0.0, 1.0 - red - blue), blue);
 }
 
-/// How unlike the local map's own scale a map sees a point: ReferenceLookup.cpp's orderByScale.
-float misfitOf(MapView map, vec3 point) {
-    vec3 apart = point - map.offset;
-    float own = max(dot(point, point), 1e-30), squared = max(dot(apart, apart), 1e-30);
-    return squared > own ? squared / own : own / squared;
+/// A point and the plane {x : plane . x = 1} around it, seen from the local map's centre.
+struct SurfacePatch {
+    vec3 point;
+    vec3 plane;
+};
+
+/// How unlike the local map's own detail a map sees a patch: DetailOrder.cpp's orderByDetail.
+float misfitOf(MapView map, SurfacePatch around) {
+    const float grazing = 0.01;
+    vec3 apart = around.point - map.offset;
+    float squared = max(dot(around.point, around.point), 1e-30) / max(dot(apart, apart), 1e-30);
+    float along = (1.0 - dot(around.plane, map.offset)) * squared;
+    float across = sqrt(squared);
+    return along > grazing ? max(max(along, across), 1.0 / min(along, across))
+                           : (1.0 / grazing) * (1.0 + 1.0 / squared);
 }
 
 /// The candidate that follows the one of this misfit and number in the order by misfit, then number. Found anew
 /// each time instead of sorted once: most texels ask one candidate, and a sorted list would have to live in memory.
-uint nextByScale(uint firstView, uint count, vec3 point, inout float misfit, uint last) {
+uint nextByDetail(uint firstView, uint count, SurfacePatch seen, inout float misfit, uint last) {
     uint best = count;
     float bestMisfit = infinity;
     for (uint k = 0u; k < count; ++k) {
-        float m = misfitOf(mapViews[firstView + k], point);
+        float m = misfitOf(mapViews[firstView + k], seen);
         bool follows = m > misfit || (m == misfit && (last == count || k > last));
         if (follows && (m < bestMisfit || best == count)) {
             best = k;
@@ -126,8 +144,8 @@ uint nextByScale(uint firstView, uint count, vec3 point, inout float misfit, uin
 }
 
 /// The colour of one texel. `direction`: of the texel's ray; `start`: its heightfield hit, 1 / reciprocal;
-/// `orderPoint`: where the middle one of the texels that share an order starts. Without candidates black sky.
-vec3 lookUpRefined(vec3 direction, float start, vec3 orderPoint, uint firstView, uint count, int lookups,
+/// `seen`: around the middle one of the texels that share an order. Without candidates black sky.
+vec3 lookUpRefined(vec3 direction, float start, SurfacePatch seen, uint firstView, uint count, int lookups,
                    float agreement, out float depth) {
     float dd = dot(direction, direction);
     float bestError = infinity, bestDepth = count > 0u ? start : infinity;
@@ -135,7 +153,7 @@ vec3 lookUpRefined(vec3 direction, float start, vec3 orderPoint, uint firstView,
     float misfit = -1.0;
     uint k = count;
     for (uint asked = 0u; asked < count; ++asked) {
-        k = nextByScale(firstView, count, orderPoint, misfit, k);
+        k = nextByDetail(firstView, count, seen, misfit, k);
         if (k >= count) break;
         MapView map = mapViews[firstView + k];
         float dc = dot(direction, map.offset);
@@ -144,7 +162,6 @@ vec3 lookUpRefined(vec3 direction, float start, vec3 orderPoint, uint firstView,
         float qa = at.disagreement, sum = at.sum, error = abs(qa), candidateDepth = ta;
         int block = at.chromaBlock;
         float tb = ta, qb = qa;
-        // Each texel ends for itself; on the processor a vector's texels go on until the last has ended.
         for (int step = 1; step < lookups && error > agreement; ++step) {
             float next;
             if (step == 1) {

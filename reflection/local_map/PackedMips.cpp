@@ -105,9 +105,8 @@ void packMips(const LocalMap& map, PackedMips& out) {
         if (level > 0) {
             for (int c = 0; c < 3; ++c) {
                 current[c].resize(count);
-                for (std::size_t face = 0; face < 6; ++face)
-                    HWY_DYNAMIC_DISPATCH(Halve)
-                    (planes[c] + face * 4 * side * side, current[c].data() + face * side * side, side);
+                for (std::size_t face = 0; face < 6; ++face) HWY_DYNAMIC_DISPATCH(Halve)
+                (planes[c] + face * 4 * side * side, current[c].data() + face * side * side, side);
             }
             for (int c = 0; c < 3; ++c) {
                 previous[c].swap(current[c]);

@@ -3,7 +3,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/local_map/ReferenceLookup.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
 
 #include "reflection/local_map/ReferenceLookup.h"
 
@@ -11,177 +10,23 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "reflection/local_map/DetailOrder.h"
+#include "reflection/local_map/PackedProbe-inl.h"
 #include "reflection/reference_maps/CubeMapping.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace reflection {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Float = hn::ScalableTag<float>;
-using Int = hn::RebindToSigned<Float>;
-using Word = hn::RebindToUnsigned<Float>;
-using VF = hn::Vec<Float>;
-using VI = hn::Vec<Int>;
-using VW = hn::Vec<Word>;
-using MF = hn::Mask<Float>;
-
 /// More than this many candidates are not asked.
 constexpr std::size_t mostCandidates = 16;
-
-struct MapView {
-    const std::uint8_t* words;
-    const std::uint16_t* chroma;
-    int faceSize;
-    int chromaColumns;
-    float radianceScale;
-    float ox, oy, oz;
-};
-
-struct FacePoint {
-    VI face;
-    VF u, v;   ///< texels from the face's corner, 0 .. faceSize
-    VF depth;  ///< along the face's major axis
-};
-
-HWY_INLINE FacePoint toFace(VF x, VF y, VF z, int faceSize) {
-    const Float d;
-    const Int di;
-    const VF ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
-    const MF isX = hn::And(hn::Ge(ax, ay), hn::Ge(ax, az));
-    const MF isY = hn::AndNot(isX, hn::Ge(ay, az));
-    const VF major = hn::Max(ax, hn::Max(ay, az));
-    const VF sign = hn::SignBit(d);
-    const VF value = hn::IfThenElse(isX, x, hn::IfThenElse(isY, y, z));
-    const VF flip = hn::And(value, sign);
-    // See CubeMapping: +X (-z, -y), -X (z, -y), +Y (x, z), -Y (x, -z), +Z (x, -y), -Z (-x, -y).
-    const VF s = hn::IfThenElse(isX, hn::Xor(hn::Neg(z), flip), hn::IfThenElse(isY, x, hn::Xor(x, flip)));
-    const VF t = hn::IfThenElse(isY, hn::Xor(z, flip), hn::Neg(y));
-    const VF scale = hn::Div(hn::Set(d, 0.5f * static_cast<float>(faceSize)), major);
-    const VF half = hn::Set(d, 0.5f * static_cast<float>(faceSize));
-    const VI pair = hn::IfThenElse(hn::RebindMask(di, isX), hn::Zero(di),
-                                   hn::IfThenElse(hn::RebindMask(di, isY), hn::Set(di, 2), hn::Set(di, 4)));
-    const VI negative = hn::BitCast(di, hn::ShiftRight<31>(hn::BitCast(Word(), value)));
-    return {hn::Add(pair, negative), hn::Add(hn::Mul(s, scale), half), hn::Add(hn::Mul(t, scale), half),
-            major};
-}
-
-/// The 20-bit word of a bordered texel.
-HWY_INLINE VW fetchWord(const MapView& map, VI index) {
-    const Int di;
-    const Word dw;
-    const VI five = hn::Add(hn::ShiftLeft<2>(index), index);
-    const VI byte = hn::ShiftRight<1>(five);
-    const VW raw = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.words), byte);
-    const VI odd = hn::And(index, hn::Set(di, 1));
-    return hn::And(hn::Shr(raw, hn::BitCast(dw, hn::ShiftLeft<2>(odd))), hn::Set(dw, 0xfffffu));
-}
-
-HWY_INLINE VI borderedIndex(VI face, VI x, VI y, int faceSize) {
-    const Int di;
-    const VI m = hn::Set(di, faceSize + 2);
-    return hn::Add(hn::Mul(hn::Add(hn::Mul(face, m), y), m), x);
-}
-
-/// What a map holds in the direction of a point.
-struct Probe {
-    VF disagreement;  ///< depth of the point times the nearness there, minus 1
-    VF sum;           ///< R+G+B
-    VI chromaBlock;
-};
-
-/// Bilinear in nearness and brightness; the block of the nearest texel for chroma.
-HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
-    const Float d;
-    const Int di;
-    const Word dw;
-    const FacePoint p = toFace(x, y, z, map.faceSize);
-    const VF half = hn::Set(d, 0.5f);
-    // In bordered texels the centre of texel i lies at i + 1.5; clamped, since rounding may pass the face's
-    // edge.
-    const VF most = hn::Set(d, static_cast<float>(map.faceSize) + 0.9999f);
-    const VF u = hn::Min(hn::Max(hn::Add(p.u, half), hn::Zero(d)), most);
-    const VF v = hn::Min(hn::Max(hn::Add(p.v, half), hn::Zero(d)), most);
-    const VI ix = hn::ConvertTo(di, u), iy = hn::ConvertTo(di, v);
-    const VF fx = hn::Sub(u, hn::ConvertTo(d, ix)), fy = hn::Sub(v, hn::ConvertTo(d, iy));
-    const VI index = borderedIndex(p.face, ix, iy, map.faceSize);
-    const VI row = hn::Set(di, map.faceSize + 2);
-    const VI one = hn::Set(di, 1);
-    const VW w00 = fetchWord(map, index), w10 = fetchWord(map, hn::Add(index, one));
-    const VW w01 = fetchWord(map, hn::Add(index, row)),
-             w11 = fetchWord(map, hn::Add(hn::Add(index, row), one));
-    const auto bilinear = [&](VF a, VF b, VF c, VF e) {
-        const VF top = hn::MulAdd(fx, hn::Sub(b, a), a), bottom = hn::MulAdd(fx, hn::Sub(e, c), c);
-        return hn::MulAdd(fy, hn::Sub(bottom, top), top);
-    };
-    const auto nearness = [&](VW word) {
-        const VW code = hn::And(word, hn::Set(dw, PackedReferenceMap::nearnessMask));
-        return hn::BitCast(
-            d, hn::Add(hn::ShiftLeft<16>(code), hn::Set(dw, PackedReferenceMap::nearnessExponentBias << 23)));
-    };
-    const auto sum = [&](VW word) {
-        const VW code = hn::ShiftRight<PackedReferenceMap::nearnessBits>(word);
-        return hn::BitCast(d, hn::Add(hn::ShiftLeft<PackedReferenceMap::sumMantissaShift>(code),
-                                      hn::Set(dw, PackedReferenceMap::sumExponentBias << 23)));
-    };
-    Probe result;
-    result.disagreement =
-        hn::Sub(hn::Mul(p.depth, bilinear(nearness(w00), nearness(w10), nearness(w01), nearness(w11))),
-                hn::Set(d, 1.0f));
-    result.sum = bilinear(sum(w00), sum(w10), sum(w01), sum(w11));
-    const VI columns = hn::Set(di, map.chromaColumns);
-    const VI rows = hn::Set(di, (map.faceSize + 2) / 2);
-    const VI bx = hn::Min(hn::ShiftRight<2>(hn::ConvertTo(di, hn::Add(u, half))), hn::Sub(columns, one));
-    const VI by = hn::Min(hn::ShiftRight<1>(hn::ConvertTo(di, hn::Add(v, half))), hn::Sub(rows, one));
-    result.chromaBlock = hn::Add(hn::Mul(hn::Add(hn::Mul(p.face, rows), by), columns), bx);
-    return result;
-}
-
-struct Colour {
-    VF red, green, blue;
-};
-
-HWY_INLINE Colour colourOf(const MapView& map, VF sum, VI chromaBlock) {
-    const Float d;
-    const Int di;
-    const Word dw;
-    const VW shares = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.chroma),
-                                       hn::ShiftLeft<1>(chromaBlock));
-    const VW low = hn::Set(dw, 0xffu);
-    const VF unit = hn::Set(d, 1.0f / 255.0f);
-    const VF red = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(shares, low))), unit);
-    const VF blue = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<8>(shares), low))), unit);
-    const VF green = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(hn::Set(d, 1.0f), red), blue));
-    const VF all = hn::Mul(sum, hn::Set(d, map.radianceScale));
-    return {hn::Mul(all, red), hn::Mul(all, green), hn::Mul(all, blue)};
-}
 
 MapView viewOf(const Candidate& c, int localFaceSize) {
     const PackedReferenceMap::Level& level = c.map->levelFor(localFaceSize);
     return {level.words(),          level.chroma(), level.faceSize(), level.chromaColumns(),
             c.map->radianceScale(), c.offset.x,     c.offset.y,       c.offset.z};
-}
-
-/// Puts the maps first that see the point at about the scale at which the local map does. A map much farther
-/// from it than the local map's centre lacks detail; a much nearer one has more than the local map can hold,
-/// which would alias.
-void orderByScale(std::span<const Candidate> candidates, const glm::vec3& point,
-                  std::span<std::uint8_t> order, std::span<float> misfit) {
-    const float own = point.x * point.x + point.y * point.y + point.z * point.z;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const glm::vec3 o = candidates[k].offset;
-        const float x = point.x - o.x, y = point.y - o.y, z = point.z - o.z;
-        const float squared = x * x + y * y + z * z;
-        const float m = squared > own ? squared / own : own / squared;
-        std::size_t at = k;
-        for (; at > 0 && misfit[at - 1] > m; --at) {
-            misfit[at] = misfit[at - 1];
-            order[at] = order[at - 1];
-        }
-        misfit[at] = m;
-        order[at] = static_cast<std::uint8_t>(k);
-    }
 }
 
 /// The map's answer for the point t d of a ray.
@@ -191,142 +36,168 @@ HWY_INLINE Probe probeAlong(const MapView& map, VF dx, VF dy, VF dz, VF t) {
                  hn::Sub(hn::Mul(t, dy), hn::Set(d, map.oy)), hn::Sub(hn::Mul(t, dz), hn::Set(d, map.oz)));
 }
 
+/// Neighbours share one order of candidates: that of the middle of so many texels of a row.
+constexpr int orderBlock = 16;
+
+struct Rays {
+    VF x, y, z;  ///< directions
+    VF squared;  ///< of their lengths
+};
+
+/// What one map has to say of rays.
+struct Answer {
+    VF error;  ///< greatest where it does not see them
+    VF depth, sum;
+    VI chromaBlock;
+};
+
+/// Moves the hit along the rays until the map's own distance agrees, the lookups are used up, or all rays are
+/// `settled` already.
+HWY_INLINE Answer askMap(const MapView& map, const Rays& rays, VF start, MF settled,
+                         const LookupOptions& options) {
+    const Float d;
+    const Int di;
+    const VF one = hn::Set(d, 1.0f);
+    const VF sky = hn::Set(d, PackedReferenceMap::skyDepth);
+    const VF agreement = hn::Set(d, options.agreement);
+    // The candidate's own surface is where it is, however far the start; a secant may overshoot.
+    const VF boldest = hn::Set(d, 0.25f);
+    const Probe first = probeAlong(map, rays.x, rays.y, rays.z, start);
+    Answer answer{hn::Abs(first.disagreement), start, first.sum, first.chromaBlock};
+
+    // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray parameter is
+    // (d.C + (t d.d - d.C) / (1 + q)) / d.d.
+    const VF centre = hn::MulAdd(rays.x, hn::Set(d, map.ox),
+                                 hn::MulAdd(rays.y, hn::Set(d, map.oy), hn::Mul(rays.z, hn::Set(d, map.oz))));
+    const VF shrink = hn::Div(one, hn::Max(hn::Add(first.disagreement, one), hn::Set(d, 1e-4f)));
+    const VF projected =
+        hn::Div(hn::MulAdd(hn::Sub(hn::Mul(start, rays.squared), centre), shrink, centre), rays.squared);
+    VF ta = start, qa = first.disagreement;
+    VF tb = hn::Min(hn::IfThenElse(hn::Gt(projected, hn::Zero(d)), projected, hn::Mul(start, boldest)), sky);
+    for (int lookup = 1; lookup < options.lookups; ++lookup) {
+        const MF pending = hn::AndNot(settled, hn::Gt(answer.error, agreement));
+        if (hn::AllFalse(d, pending)) break;
+        const Probe next = probeAlong(map, rays.x, rays.y, rays.z, tb);
+        const VF qb = next.disagreement;
+        const MF better = hn::And(pending, hn::Lt(hn::Abs(qb), answer.error));
+        answer.error = hn::IfThenElse(better, hn::Abs(qb), answer.error);
+        answer.depth = hn::IfThenElse(better, tb, answer.depth);
+        answer.sum = hn::IfThenElse(better, next.sum, answer.sum);
+        answer.chromaBlock = hn::IfThenElse(hn::RebindMask(di, better), next.chromaBlock, answer.chromaBlock);
+        const VF slope = hn::Sub(qb, qa);
+        const MF flat = hn::Lt(hn::Abs(slope), hn::Set(d, 1e-6f));
+        const VF secant =
+            hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
+        ta = tb;
+        qa = qb;
+        tb = hn::Max(hn::Min(hn::IfThenElse(flat, tb, secant), sky), hn::Mul(tb, boldest));
+    }
+    return answer;
+}
+
+/// A part of a row of texels, as long as a vector or shorter.
+struct RowPart {
+    std::size_t first, count;
+
+    HWY_INLINE VF load(const float* plane) const {
+        const Float d;
+        if (count == hn::Lanes(d)) return hn::LoadU(d, plane + first);
+        HWY_ALIGN float padded[HWY_MAX_BYTES / sizeof(float)];
+        std::copy_n(plane + first, count, padded);
+        std::fill(padded + count, padded + hn::Lanes(d), padded[count - 1]);
+        return hn::Load(d, padded);
+    }
+    HWY_INLINE void store(VF value, float* plane) const {
+        const Float d;
+        if (count == hn::Lanes(d)) {
+            hn::StoreU(value, d, plane + first);
+            return;
+        }
+        HWY_ALIGN float padded[HWY_MAX_BYTES / sizeof(float)];
+        hn::Store(value, d, padded);
+        std::copy_n(padded, count, plane + first);
+    }
+};
+
 void LookUpRefined(int face, const float* reciprocal, std::span<const Candidate> candidates,
                    const LookupOptions& options, LocalMap& out) {
     const Float d;
     const int n = out.faceSize;
-    const std::size_t lanes = hn::Lanes(d);
+    const int lanes = static_cast<int>(std::min<std::size_t>(hn::Lanes(d), orderBlock));
     const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
     const std::size_t base = out.faceOffset(face);
-    const std::size_t texels = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     const float texelSize = 2.0f / static_cast<float>(n);
-    const Int di;
     const VF sky = hn::Set(d, PackedReferenceMap::skyDepth);
+    const VF nothing = hn::Set(d, 1.0f / PackedReferenceMap::skyDepth);
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const VF agreement = hn::Set(d, options.agreement);
     const VF one = hn::Set(d, 1.0f);
     candidates = candidates.first(std::min<std::size_t>(candidates.size(), mostCandidates));
     std::array<MapView, mostCandidates> views;
     std::array<std::uint8_t, mostCandidates> order;
-    std::array<float, mostCandidates> misfit;
     for (std::size_t k = 0; k < candidates.size(); ++k) views[k] = viewOf(candidates[k], n);
-    HWY_ALIGN float texelS[HWY_MAX_BYTES / sizeof(float)];
-    HWY_ALIGN float texelT[HWY_MAX_BYTES / sizeof(float)];
+    HWY_ALIGN float columns[HWY_MAX_BYTES / sizeof(float)];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) columns[lane] = static_cast<float>(lane) + 0.5f;
 
-    int column = 0, row = 0;
-    for (std::size_t first = 0; first < texels; first += lanes) {
-        const std::size_t count = std::min(lanes, texels - first);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            // Lanes past the last texel repeat it.
-            texelS[lane] = (static_cast<float>(column) + 0.5f) * texelSize - 1;
-            texelT[lane] = (static_cast<float>(row) + 0.5f) * texelSize - 1;
-            if (lane + 1 < count && ++column == n) {
-                column = 0;
-                ++row;
+    for (int y = 0; y < n; ++y) {
+        const float t = (static_cast<float>(y) + 0.5f) * texelSize - 1;
+        int ordered = -1;
+        for (int x = 0; x < n; x += lanes) {
+            const RowPart inFace{static_cast<std::size_t>(y * n + x),
+                                 static_cast<std::size_t>(std::min(lanes, n - x))};
+            const RowPart part{base + inFace.first, inFace.count};
+            const VF nearness = inFace.load(reciprocal);
+            const MF open = hn::Le(nearness, nothing);
+            if (options.sky && hn::AllTrue(d, open)) {
+                part.store(part.load(options.sky->red.data()), out.red.data());
+                part.store(part.load(options.sky->green.data()), out.green.data());
+                part.store(part.load(options.sky->blue.data()), out.blue.data());
+                part.store(infinity, out.depth.data());
+                continue;
             }
-        }
-        if (++column == n) {
-            column = 0;
-            ++row;
-        }
-        const VF s = hn::Load(d, texelS), t = hn::Load(d, texelT);
-        const auto along = [&](float major, float sAxis, float tAxis) {
-            return hn::MulAdd(s, hn::Set(d, sAxis), hn::MulAdd(t, hn::Set(d, tAxis), hn::Set(d, major)));
-        };
-        const VF dx = along(f.major.x, f.sAxis.x, f.tAxis.x);
-        const VF dy = along(f.major.y, f.sAxis.y, f.tAxis.y);
-        const VF dz = along(f.major.z, f.sAxis.z, f.tAxis.z);
-        const VF dd = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-
-        VF start;
-        if (count == lanes) {
-            start = hn::LoadU(d, reciprocal + first);
-        } else {
-            HWY_ALIGN float rest[HWY_MAX_BYTES / sizeof(float)] = {};
-            std::copy_n(reciprocal + first, count, rest);
-            start = hn::Load(d, rest);
-        }
-        start = hn::Min(hn::Div(one, hn::Max(start, hn::Set(d, 1.0f / PackedReferenceMap::skyDepth))), sky);
-
-        // Neighbours share one order: that of the middle one.
-        const std::size_t middle = count / 2;
-        HWY_ALIGN float startLanes[HWY_MAX_BYTES / sizeof(float)];
-        hn::Store(start, d, startLanes);
-        orderByScale(candidates,
-                     startLanes[middle] * (f.major + texelS[middle] * f.sAxis + texelT[middle] * f.tAxis),
-                     std::span(order).first(candidates.size()), misfit);
-
-        VF bestError = infinity, bestDepth = start;
-        Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-        for (std::size_t k = 0; k < candidates.size(); ++k) {
-            const MapView& map = views[order[k]];
-            const VF dc = hn::MulAdd(dx, hn::Set(d, map.ox),
-                                     hn::MulAdd(dy, hn::Set(d, map.oy), hn::Mul(dz, hn::Set(d, map.oz))));
-            VF ta = start;
-            Probe at = probeAlong(map, dx, dy, dz, ta);
-            VF qa = at.disagreement, sum = at.sum, error = hn::Abs(qa), depth = ta;
-            VI block = at.chromaBlock;
-            VF tb = ta, qb = qa;
-            for (int step = 1; step < options.lookups; ++step) {
-                if (hn::AllTrue(d, hn::Le(hn::Min(error, bestError), agreement))) break;
-                VF next;
-                if (step == 1) {
-                    // The candidate's surface point C + (X - C) / (1 + q), projected onto the ray: its ray
-                    // parameter is (d.C + (t d.d - d.C) / (1 + q)) / d.d.
-                    const VF scale = hn::Div(one, hn::Max(hn::Add(qa, one), hn::Set(d, 1e-4f)));
-                    next = hn::Div(hn::MulAdd(hn::Sub(hn::Mul(ta, dd), dc), scale, dc), dd);
-                } else {
-                    const VF slope = hn::Sub(qb, qa);
-                    const MF flat = hn::Lt(hn::Abs(slope), hn::Set(d, 1e-6f));
-                    next =
-                        hn::Sub(tb, hn::Div(hn::Mul(qb, hn::Sub(tb, ta)), hn::IfThenElse(flat, one, slope)));
-                    next = hn::IfThenElse(flat, tb, next);
-                }
-                // The candidate's own surface is where it is, however far the start; a secant may overshoot.
-                const VF quarter = hn::Mul(tb, hn::Set(d, 0.25f));
-                next = hn::Min(next, sky);
-                next = step == 1 ? hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, quarter)
-                                 : hn::Max(next, quarter);
-                ta = tb;
-                qa = qb;
-                tb = next;
-                at = probeAlong(map, dx, dy, dz, tb);
-                qb = at.disagreement;
-                const VF size = hn::Abs(qb);
-                const MF better = hn::Lt(size, error);
-                error = hn::IfThenElse(better, size, error);
-                depth = hn::IfThenElse(better, tb, depth);
-                sum = hn::IfThenElse(better, at.sum, sum);
-                block = hn::IfThenElse(hn::RebindMask(di, better), at.chromaBlock, block);
+            if (x / orderBlock != ordered) {
+                ordered = x / orderBlock;
+                const int middle = std::min(ordered * orderBlock + orderBlock / 2, n - 1);
+                orderByDetail(candidates, patchAround(f, reciprocal, n, middle, y),
+                              std::span(order).first(candidates.size()));
             }
-            const MF improves = hn::AndNot(hn::Le(bestError, agreement), hn::Lt(error, bestError));
-            if (!hn::AllFalse(d, improves)) {
-                const Colour c = colourOf(map, sum, block);
+
+            const VF s = hn::MulAdd(hn::Add(hn::Load(d, columns), hn::Set(d, static_cast<float>(x))),
+                                    hn::Set(d, texelSize), hn::Set(d, -1.0f));
+            const auto along = [&](float major, float sAxis, float tAxis) {
+                return hn::MulAdd(s, hn::Set(d, sAxis), hn::Set(d, major + t * tAxis));
+            };
+            Rays rays{along(f.major.x, f.sAxis.x, f.tAxis.x), along(f.major.y, f.sAxis.y, f.tAxis.y),
+                      along(f.major.z, f.sAxis.z, f.tAxis.z), one};
+            rays.squared = hn::MulAdd(rays.x, rays.x, hn::MulAdd(rays.y, rays.y, hn::Mul(rays.z, rays.z)));
+            const VF start = hn::Min(hn::Div(one, hn::Max(nearness, nothing)), sky);
+
+            MF settled = options.sky ? open : hn::Lt(one, one);
+            Colour colour{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+            if (options.sky)
+                colour = {part.load(options.sky->red.data()), part.load(options.sky->green.data()),
+                          part.load(options.sky->blue.data())};
+            VF error = infinity, depth = start;
+            for (std::size_t k = 0; k < candidates.size() && !hn::AllTrue(d, settled); ++k) {
+                const MapView& map = views[order[k]];
+                const Answer answer = askMap(map, rays, start, settled, options);
+                const MF improves = hn::AndNot(settled, hn::Lt(answer.error, error));
+                const Colour c = colourOf(map, answer.sum, answer.chromaBlock);
                 colour.red = hn::IfThenElse(improves, c.red, colour.red);
                 colour.green = hn::IfThenElse(improves, c.green, colour.green);
                 colour.blue = hn::IfThenElse(improves, c.blue, colour.blue);
-                bestError = hn::IfThenElse(improves, error, bestError);
-                bestDepth = hn::IfThenElse(improves, depth, bestDepth);
+                error = hn::IfThenElse(improves, answer.error, error);
+                depth = hn::IfThenElse(improves, answer.depth, depth);
+                settled = hn::Or(settled, hn::Le(error, agreement));
             }
-            if (hn::AllTrue(d, hn::Le(bestError, agreement))) break;
+            // Between the farthest building and the sky there is nothing: halfway decides.
+            depth = hn::IfThenElse(hn::Ge(depth, hn::Set(d, 0.5f * PackedReferenceMap::skyDepth)), infinity,
+                                   depth);
+            part.store(colour.red, out.red.data());
+            part.store(colour.green, out.green.data());
+            part.store(colour.blue, out.blue.data());
+            part.store(depth, out.depth.data());
         }
-        // Between the farthest building and the sky there is nothing: halfway decides.
-        bestDepth = hn::IfThenElse(hn::Ge(bestDepth, hn::Set(d, 0.5f * PackedReferenceMap::skyDepth)),
-                                   infinity, bestDepth);
-
-        const auto store = [&](VF value, std::vector<float>& plane) {
-            if (count == lanes) {
-                hn::StoreU(value, d, plane.data() + base + first);
-            } else {
-                HWY_ALIGN float rest[HWY_MAX_BYTES / sizeof(float)];
-                hn::Store(value, d, rest);
-                std::copy_n(rest, count, plane.data() + base + first);
-            }
-        };
-        store(colour.red, out.red);
-        store(colour.green, out.green);
-        store(colour.blue, out.blue);
-        store(bestDepth, out.depth);
     }
 }
 

@@ -23,6 +23,10 @@ struct LookupOptions {
     /// packed distance resolves (2^-8) and a texel's slant: 1 % is the flat optimum measured on the built-in
     /// cities.
     float agreement = 0.01f;
+    /// Radiance of the sky alone in a map of the local map's face size, or null. Where the heightfield shows
+    /// sky it is taken from here: no parallax to correct, and of what a reference map has of the sky another
+    /// part is hidden by roofs.
+    const LocalMap* sky = nullptr;
 };
 
 /// Reads a face of a local map from reference maps with refined hits.
@@ -33,8 +37,9 @@ struct LookupOptions {
 /// (1 / M = n.w / c for the direction w = (X - C) / m, so m / M = n.(X - C) / c): the secant through two
 /// lookups meets the surface exactly, whatever the angle; the start is the projection of the candidate's own
 /// surface point onto the ray. q < 0: the candidate looks past X, so the heightfield was too fat; q > 0:
-/// something hides X from the candidate. Of up to 16 candidates those that see X at about the local map's own
-/// scale are asked first, until one agrees; where none does the best agreement wins (the paper: the closest).
+/// something hides X from the candidate. Of up to 16 candidates those that see X in about the local map's own
+/// detail are asked first (DetailOrder.h), until one agrees; where none does the best agreement wins (the
+/// paper: the closest).
 ///
 /// `reciprocal`: faceSize^2 values of 1/t0, 0 for sky (taken as a cube skyDepth away). Writes the face's
 /// texels of `map`. Needs at least one candidate, all of one face size. Cost: about lookups + 5 gathers a

@@ -1,12 +1,12 @@
 #include "reflection/local_map/ReferenceLookup.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "tests/reflection/EveryInstructionSet.h"
 #include "tests/reflection/local_map/AnalyticScene.h"
 #include "tests/reflection/tracing/SeededRandom.h"
 
@@ -19,21 +19,6 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr double packedColourError = 1.0 / 32 + 1.0 / 255;
 /// Nearness: half a step of 7 mantissa bits.
 constexpr double packedDepthError = 1.0 / 256;
-
-template <typename Body>
-void onEveryInstructionSet(const Body& body) {
-    const std::int64_t all = hwy::SupportedTargets();
-    for (int bit = 0; bit < 63; ++bit) {
-        const std::int64_t target = std::int64_t{1} << bit;
-        if ((all & target) == 0) continue;
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        SCOPED_TRACE(hwy::TargetName(target));
-        body();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 /// The slow way to what a level holds in a direction: bilinear nearness and brightness, the nearest texel's
 /// chroma.
@@ -289,35 +274,6 @@ TEST(ReferenceLookupTest, planesAreMetAtAllAnglesDownToThreeDegrees) {
     EXPECT_GT(asked, 40000);
     // Along the cube's edges a bordering texel stands half a texel off.
     EXPECT_LE(wrong, asked / 200);
-}
-
-TEST(ReferenceLookupTest, whatTheNearestMapCannotSeeComesFromTheOther) {
-    // Between the nearer map and the local map's centre stands a red board; the farther one sees the room.
-    const glm::dvec3 centre(2, 0, 1), near(0.5, 0.3, 1.2), far(2.5, -3, 1.5);
-    const Scene hidden = [](const glm::dvec3& from, const glm::dvec3& d) {
-        SceneHit hit = roomScene(from, d);
-        if (d.x > 0 && 0.3 / d.x < hit.t) hit = {0.3 / d.x, 9, glm::dvec3(3, 0.01, 0.01)};
-        return hit;
-    };
-    const PackedReferenceMap blind = mapOf(hidden, near, 128), clear = mapOf(roomScene, far, 128);
-    const std::vector<Candidate> candidates{{&blind, glm::vec3(near - centre)},
-                                            {&clear, glm::vec3(far - centre)}};
-    const int n = 32;
-    LocalMap map = emptyMap(n);
-    std::vector<float> start;
-    for (int i = 0; i < n * n; ++i)
-        start.push_back(static_cast<float>(
-            1 / roomScene(centre, glm::dvec3(cubeDirection(0, glm::vec2(i % n, i / n) + 0.5f, n))).t));
-    onEveryInstructionSet([&] {
-        lookUpRefined(0, start, candidates, {}, map);
-        int red = 0;
-        for (int i = 0; i < n * n; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            red += map.red[at] > 2 * map.green[at] ? 1 : 0;
-            EXPECT_NEAR(map.depth[at] * start[at], 1, 0.15);
-        }
-        EXPECT_EQ(red, 0);
-    });
 }
 
 TEST(ReferenceLookupTest, degenerateStartsAndOffsetsGiveNoNaN) {
