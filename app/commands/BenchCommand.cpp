@@ -41,8 +41,7 @@ int reportBench(const Options& options, const ResultFile& results,
         return measured ? exitOk : exitFailed;
     }
     spdlog::warn(measured ? "interrupted: what was measured until then is kept"
-                          : "interrupted before anything was measured: what is finished of the city's "
-                            "preparation is kept");
+                          : "interrupted before anything was measured");
     return exitFailed;
 }
 

@@ -145,10 +145,11 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             settings.quality = options.quality;
             settings.mapsOn = mapsOn;
             settings.gpuMapBytes = options.gpuMapBytes;
-            methods.push_back(
-                {std::move(name),
-                 std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings),
-                 {}});
+            MethodRun run;
+            run.name = std::move(name);
+            run.engine =
+                std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, settings);
+            methods.push_back(std::move(run));
         };
         add("none", ReflectionMethod::none, MemVariant::ours);
         add("static", ReflectionMethod::fixed, MemVariant::ours);

@@ -44,7 +44,7 @@ std::uint32_t chooseLength(double msPerFrame, std::uint32_t fps) {
 bool stillDue(std::uint32_t frame, std::uint32_t frames, std::uint32_t stills) {
     if (stills == 0) return false;
     const auto at = [&](std::uint64_t k) {
-        return static_cast<std::uint32_t>((2 * k + 1) * frames / (2 * stills));
+        return static_cast<std::uint32_t>((2 * k + 1) * frames / (std::uint64_t{2} * stills));
     };
     const std::uint64_t near = static_cast<std::uint64_t>(frame) * stills / std::max(frames, 1u);
     return at(near) == frame || (near > 0 && at(near - 1) == frame) || at(near + 1) == frame;

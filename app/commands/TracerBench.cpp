@@ -124,7 +124,7 @@ std::optional<glm::vec3> streetPoint(const city::Heightfield& field, Random& ran
 
 Fans streetFans(const city::Heightfield& field, int origins, bool cube, Random& random) {
     Fans fans;
-    fans.fanSize = 6 * faceSize * faceSize;
+    fans.fanSize = std::size_t{6} * faceSize * faceSize;
     for (int k = 0; k < origins; ++k) {
         const auto origin = streetPoint(field, random);
         if (!origin)

@@ -15,8 +15,6 @@
 
 #include "app/report/AsideFile.h"
 
-extern char** environ;
-
 namespace app {
 
 namespace {
@@ -68,6 +66,7 @@ void VideoWriter::Impl::start(int framesPerSecond) {
     // The prefix keeps ffmpeg from taking a name for an option or for a protocol.
     words.insert(words.end(), {"-movflags", "+faststart", "-f", "mp4", "file:" + file.aside().string()});
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
 

@@ -157,7 +157,7 @@ class Reader {
         }
     }
 
-    void readBand(int y, OIIO::TypeDesc type) {
+    void readBand(int y, const OIIO::TypeDesc& type) {
         const OIIO::ImageSpec& s = spec();
         const int rows = s.tile_height > 0 ? s.tile_height : 64;
         bandStart_ = y / rows * rows;

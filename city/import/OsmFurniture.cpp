@@ -188,7 +188,8 @@ class Furnisher {
             for (int row = 0; low.y + static_cast<float>(row) * woodSpacing < high.y; ++row) {
                 for (int column = 0; low.x + static_cast<float>(column) * woodSpacing < high.x; ++column) {
                     if (counts_.woodTrees >= mostWoodTrees) return;
-                    const auto id = static_cast<std::int64_t>(w) * 1000003 + row * 2003 + column;
+                    const auto id =
+                        static_cast<std::int64_t>(w) * 1000003 + std::int64_t{row} * 2003 + column;
                     const std::uint64_t hash = mixed(seed_ + 1, id);
                     const glm::vec2 p = low + woodSpacing * (glm::vec2(column, row) +
                                                              glm::vec2(uniform(hash, 1), uniform(hash, 2)));

@@ -154,6 +154,7 @@ double HeightGuess::guess(glm::vec2 position, BuildingKind kind) const {
     std::sort(near.begin(), near.end());
     near.resize(std::min(near.size(), mostNeighbours));
     std::vector<double> heights;
+    heights.reserve(near.size());
     for (const auto& [distance, height] : near) heights.push_back(height);
     const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
     std::nth_element(heights.begin(), middle, heights.end());

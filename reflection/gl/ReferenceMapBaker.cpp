@@ -38,7 +38,7 @@ ReferenceMap ReferenceMapBaker::bake(SceneDrawer& drawer, const glm::dvec3& cent
                                      const CubeContent& content) {
     const int n = impl_->faceSize;
     const int k = impl_->supersampling;
-    const auto drawn = static_cast<std::size_t>(n * k);
+    const auto drawn = static_cast<std::size_t>(n) * static_cast<std::size_t>(k);
     CubeTarget target;
     target.colour = impl_->colour.name();
     target.distance = impl_->distance.name();

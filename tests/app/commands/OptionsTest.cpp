@@ -132,8 +132,9 @@ TEST(OptionsTest, absurdNumbersAreRefusedAndNamed) {
     };
     for (const auto& [option, values] : absurd)
         for (const std::string& value : values) {
-            const auto [code, said] = refused(tour(), {option + "=" + value});
-            EXPECT_EQ(code, exitUsage) << option << "=" << value;
+            const std::string argument = std::string(option).append("=").append(value);
+            const auto [code, said] = refused(tour(), {argument});
+            EXPECT_EQ(code, exitUsage) << argument;
             EXPECT_NE(said.find(option), std::string::npos) << said;
         }
 }

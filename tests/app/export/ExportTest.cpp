@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 fs::path emptyFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path folder = fs::path(MIRRORSTREET_TEST_OUT) / "export" / test->name();
+    fs::path folder = fs::path(MIRRORSTREET_TEST_OUT) / "export" / test->name();
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;

@@ -52,8 +52,10 @@ void main() { values[gl_GlobalInvocationID.x] = textureLod(cubes, vec4(direction
 }
 
 class DrawCubeGlTest : public testing::Test {
-  protected:
+  public:
     ~DrawCubeGlTest() override { EXPECT_THAT(debug_.errors(), testing::IsEmpty()); }
+
+  protected:
     OffscreenContext context_;
     gl::DebugOutput debug_;
     std::vector<vehicles::VehicleModel> models_{test::boxCar()};

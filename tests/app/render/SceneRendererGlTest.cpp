@@ -23,8 +23,8 @@ namespace {
 namespace gl = reflection::gl;
 
 class SceneRendererGlTest : public testing::Test {
-  protected:
-    SceneRendererGlTest() : debug_() {
+  public:
+    SceneRendererGlTest() {
         colour_ = gl::Texture::image2D(GL_RGBA8, size_.x, size_.y);
         framebuffer_ = gl::Framebuffer::create();
         framebuffer_.attach(GL_COLOR_ATTACHMENT0, colour_.name());
@@ -37,6 +37,7 @@ class SceneRendererGlTest : public testing::Test {
     }
     ~SceneRendererGlTest() override { EXPECT_THAT(debug_.errors(), testing::IsEmpty()); }
 
+  protected:
     Image8 draw(SceneRenderer& renderer, const View& view, const VehicleReflections& reflections = {}) {
         scene_.views = {view};
         renderer.prepare(scene_);
@@ -127,7 +128,7 @@ TEST_F(SceneRendererGlTest, vehiclesMirrorTheirMapsAndPlainOnesDoNot) {
 
 /// The same view with and without occlusion culling: the pixels equal, and something was left out somewhere.
 void expectSamePixels(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
-                      FrameScene scene, const std::vector<View>& views, std::uint32_t framebuffer) {
+                      const FrameScene& scene, const std::vector<View>& views, std::uint32_t framebuffer) {
     RenderOptions options;
     options.antialiasing = Antialiasing::none;
     SceneRenderer culling(city, models, options);

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 /// An empty folder of this test's own.
 fs::path emptyFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path folder = fs::path(MIRRORSTREET_TEST_OUT) / "report" /
-                            (std::string(test->test_suite_name()) + "." + test->name());
+    fs::path folder = fs::path(MIRRORSTREET_TEST_OUT) / "report" /
+                      (std::string(test->test_suite_name()) + "." + test->name());
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;
@@ -162,7 +162,7 @@ TEST(PictureTest, emptyPicturesAndBadPlacesAreRefused) {
     ASSERT_EQ(input->spec().width, 33);
     ASSERT_EQ(input->spec().height, 17);
     ASSERT_EQ(input->spec().nchannels, 3);
-    std::vector<std::uint8_t> read(33 * 17 * 3);
+    std::vector<std::uint8_t> read(std::size_t{33} * 17 * 3);
     ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, read.data()));
     for (std::size_t i = 0; i < read.size(); ++i) ASSERT_EQ(read[i], written.rgba[i / 3 * 4 + i % 3]);
 }

@@ -42,7 +42,7 @@ class HeightfieldFileTest : public testing::Test {
 
     /// A 4 x 3 float GeoTIFF; `tags` sets what it says about its place.
     fs::path geoTiff(const char* name, const std::function<void(TIFF*, GTIF*)>& tags) {
-        const fs::path file = folder / name;
+        fs::path file = folder / name;
         TIFF* tiff = XTIFFOpen(file.c_str(), "w");
         TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
         TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);

@@ -30,6 +30,7 @@ class OsmText {
     }
     long line(const std::vector<std::pair<double, double>>& points, const Tags& tags) {
         std::vector<long> nodes;
+        nodes.reserve(points.size());
         for (const auto& [x, y] : points) nodes.push_back(node(x, y));
         return way(nodes, tags);
     }
@@ -66,7 +67,8 @@ class OsmText {
     static std::string longitude(double x) { return std::to_string(25 + x / 55800.0); }
     static std::string text(const Tags& tags) {
         std::string out;
-        for (const auto& [key, value] : tags) out += "<tag k='" + key + "' v='" + value + "'/>";
+        for (const auto& [key, value] : tags)
+            out.append("<tag k='").append(key).append("' v='").append(value).append("'/>");
         return out;
     }
     std::string bounds_;
