@@ -1,6 +1,7 @@
 #include "reflection/tracing/GridTracer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
@@ -45,20 +46,16 @@ GridTracer::GridTracer(const city::Heightfield& field) {
     const std::size_t tilesX = (static_cast<std::size_t>(grid->width) + 3) / 4;
     const std::size_t tilesY = (static_cast<std::size_t>(grid->height) + 3) / 4;
     grid->tileRow = tilesX * 16;
-    grid->columns = LargeArray<float>(tilesY * grid->tileRow);
-    std::fill_n(grid->columns.data(), grid->columns.size(), -std::numeric_limits<float>::infinity());
+    grid->cells = tilesY * grid->tileRow;
     grid->top = -std::numeric_limits<float>::infinity();
     float bottom = std::numeric_limits<float>::infinity();
-    for (int j = 0; j < grid->height; ++j)
-        for (int i = 0; i < grid->width; ++i) {
-            const float h = field.at(i, j);
-            if (std::isnan(h)) continue;
-            grid->columns[grid->index(i, j)] = h;
-            grid->top = std::max(grid->top, h);
-            if (!std::isfinite(h)) continue;
-            bottom = std::min(bottom, h);
-            grid->largest = std::max(grid->largest, std::abs(h));
-        }
+    for (const float h : field.cells()) {
+        if (std::isnan(h)) continue;
+        grid->top = std::max(grid->top, h);
+        if (!std::isfinite(h)) continue;
+        bottom = std::min(bottom, h);
+        grid->largest = std::max(grid->largest, std::abs(h));
+    }
     grid->bottom = std::isfinite(bottom) ? bottom : 0;
     // Borders that rounding shifts by no more than 2^-30 of a cell, heights far from overflow, indices of 31
     // bits.
@@ -66,17 +63,23 @@ GridTracer::GridTracer(const city::Heightfield& field) {
         std::max({std::abs(origin.x), std::abs(origin.y), std::abs(grid->planeX(grid->width)),
                   std::abs(grid->planeY(grid->height))});
     grid->leaps = farthest * 0x1p-52 <= grid->cellSize * 0x1p-30 && grid->largest <= leapHighest &&
-                  grid->cellSize >= 0x1p-20 && grid->cellSize <= 0x1p20 && grid->columns.size() < 0x1fffffff;
-    if (grid->leaps) grid->open = findOpenRectangles(*grid);
+                  grid->cellSize >= 0x1p-20 && grid->cellSize <= 0x1p20 && grid->cells <= 0x7fffffff / 5;
+    grid->tables = LargeArray<std::uint32_t>((grid->leaps ? 5 : 1) * grid->cells);
+    std::fill_n(grid->tables.data(), grid->cells,
+                std::bit_cast<std::uint32_t>(-std::numeric_limits<float>::infinity()));
+    for (int j = 0; j < grid->height; ++j)
+        for (int i = 0; i < grid->width; ++i)
+            if (const float h = field.at(i, j); !std::isnan(h))
+                grid->tables[grid->index(i, j)] = std::bit_cast<std::uint32_t>(h);
+    if (grid->leaps) findOpenRectangles(*grid);
+    grid->scale = leapScale(*grid);
     grid_ = std::move(grid);
 }
 
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
     return leapWalk(*grid_, ray,
-                    tMax < std::numeric_limits<float>::max() || std::isnan(tMax)
-                        ? tMax
-                        : std::numeric_limits<float>::max());
+                    tMax > std::numeric_limits<float>::max() ? std::numeric_limits<float>::max() : tMax);
 }
 
 bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {

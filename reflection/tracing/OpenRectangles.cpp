@@ -112,11 +112,11 @@ Rectangle bestRectangle(const std::uint16_t* levels, const Run* runs, std::ptrdi
 
 }  // namespace
 
-OpenRectangles findOpenRectangles(const TracedGrid& grid) {
+void findOpenRectangles(TracedGrid& grid) {
     OpenRectangles result;
     float top = grid.bottom;
-    for (std::size_t k = 0; k < grid.columns.size(); ++k)
-        if (std::isfinite(grid.columns[k])) top = std::max(top, grid.columns[k]);
+    for (std::size_t k = 0; k < grid.cells; ++k)
+        if (std::isfinite(grid.column(k))) top = std::max(top, grid.column(k));
     result.base = grid.bottom;
     // A little coarser than range / highestLevel, so that the top fits in spite of rounding.
     result.step = std::max((top - grid.bottom) / 65000.0f, 1e-4f);
@@ -134,7 +134,7 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     // within the band.
     constexpr int lifts = 15;
     result.lift = std::max(1, (2 * wide + lifts * lifts - 1) / (lifts * lifts));
-    result.entries = LargeArray<OpenRectangles::Entry>(4 * grid.columns.size());
+    grid.open = result;
     const auto rowStart = [&](int j) {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
     };
@@ -142,8 +142,7 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
     for (int q = 0; q < 4; ++q) {
         const int stepX = (q & 1) != 0 ? -1 : 1;
         const int stepY = (q & 2) != 0 ? -1 : 1;
-        OpenRectangles::Entry* entries =
-            result.entries.data() + static_cast<std::size_t>(q) * grid.columns.size();
+        OpenRectangles::Entry* entries = grid.tables.data() + grid.entriesOf(static_cast<std::size_t>(q));
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& range) {
             for (int j = range.begin(); j != range.end(); ++j) {
                 findRuns(&levels[rowStart(j)], width, stepX, band, &runs[rowStart(j)]);
@@ -177,7 +176,6 @@ OpenRectangles findOpenRectangles(const TracedGrid& grid) {
             }
         });
     }
-    return result;
 }
 
 }  // namespace reflection
