@@ -103,6 +103,7 @@ struct ReflectionEngine::Impl {
     bool fixedMapBuilt = false;
     bool software = reflection::softwareRenderer();
     std::unique_ptr<reflection::LocalMapPass> gpu;  ///< made when first needed
+    Lighting gpuLighting;                           ///< of the skies that it has
 
     struct Scratch {
         reflection::LocalMapBuilder builder;
@@ -124,7 +125,7 @@ struct ReflectionEngine::Impl {
         fixedMapBuilt = false;
     }
     void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
-    void buildOnGpu(std::span<const MapJob> jobs);
+    void buildOnGpu(const FrameScene& scene, std::span<const MapJob> jobs);
     void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
                           std::vector<reflection::MovingObject>& out);
     void buildFixedMap();
@@ -188,7 +189,9 @@ void ReflectionEngine::Impl::countReferenceMaps() {
         texels == 0 ? 0 : static_cast<double>(counters.referenceMapBytes) / static_cast<double>(texels);
 }
 
-void ReflectionEngine::Impl::buildOnGpu(std::span<const MapJob> jobs) {
+void ReflectionEngine::Impl::buildOnGpu(const FrameScene& scene, std::span<const MapJob> jobs) {
+    if (!(gpuLighting == scene.lighting)) gpu->forgetSkies();
+    gpuLighting = scene.lighting;
     std::vector<reflection::LocalMapJob> wanted(jobs.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) wanted[i] = {jobs[i].slot, requests[i], neighbours[i]};
     counters.rays = gpu->build(tracer, wanted, atlas);
@@ -224,7 +227,7 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
     if (onGpu()) {
         if (!gpu) gpu = std::make_unique<reflection::LocalMapPass>(maps, settings.gpuMapBytes);
         if (gpu->usable()) {
-            buildOnGpu(jobs);
+            buildOnGpu(scene, jobs);
             return;
         }
     }
@@ -327,7 +330,7 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     engine.counters.fresh = engine.plan.fresh;
     engine.counters.postponed = engine.plan.postponed;
     engine.counters.texels = engine.plan.texels;
-    engine.counters.localMapBytes = engine.atlas.bytes();
+    engine.counters.localMapBytes = engine.atlas.bytes() + (engine.gpu ? engine.gpu->skyBytes() : 0);
     engine.counters.referenceMapGpuBytes = engine.gpu ? engine.gpu->bytes() : 0;
     engine.counters.milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

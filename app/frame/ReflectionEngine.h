@@ -39,7 +39,7 @@ std::size_t candidateCount(const ReflectionSettings& settings);
 struct ReflectionCounters {
     std::uint32_t visible = 0, rebuilt = 0, fresh = 0, postponed = 0;
     std::uint64_t texels = 0, rays = 0;
-    std::size_t localMapBytes = 0;         ///< on the GPU
+    std::size_t localMapBytes = 0;         ///< on the GPU, skies for those that it builds included
     std::size_t referenceMapBytes = 0;     ///< in main memory
     std::size_t referenceMapGpuBytes = 0;  ///< on the GPU; 0 where local maps are made on the processor
     double referenceBytesPerTexel = 0;     ///< colour and distance together; 0 without maps

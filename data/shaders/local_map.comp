@@ -28,6 +28,9 @@ float startOf(uint first, ivec2 texel) {
     return min(1.0 / max(reciprocals[first + uint(texel.y * faceSize + texel.x)], 1.0 / skyDepth), skyDepth);
 }
 
+/// Radiance of the sky alone (LookupOptions::sky).
+layout(std430, binding = 6) readonly restrict buffer Skies { vec4 skies[]; };
+
 float reciprocalOf(uint first, int x, int y) { return reciprocals[first + uint(y * faceSize + x)]; }
 
 /// DetailOrder.cpp's patchAround.
@@ -52,8 +55,12 @@ void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     // Sixteen neighbours in a row share an order.
     ivec2 middle = ivec2(min((texel.x & ~15) + 8, faceSize - 1), texel.y);
-    float depth;
-    vec3 colour = lookUpRefined(cubeDirection(job.face, vec2(texel) + 0.5), startOf(job.start, texel),
+    float depth = infinity;
+    vec3 colour;
+    if (job.sky != 0xffffffffu && reciprocalOf(job.start, texel.x, texel.y) <= 1.0 / skyDepth)
+        colour = skies[job.sky + uint(texel.y * faceSize + texel.x)].rgb;
+    else
+        colour = lookUpRefined(cubeDirection(job.face, vec2(texel) + 0.5), startOf(job.start, texel),
                                 patchAround(job.start, job.face, middle),
                                 job.firstView, job.viewCount, job.lookups, job.agreement, depth);
     if (all(greaterThanEqual(texel, job.overlayBox.xy)) && all(lessThan(texel, job.overlayBox.zw))) {

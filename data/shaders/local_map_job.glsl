@@ -9,6 +9,7 @@ struct FaceJob {
     float agreement;
     uint overlay;      // first of its overlay's texels
     ivec4 overlayBox;  // where moving objects were drawn: first texel, texel behind the last; equal: nowhere
+    uint sky;          // first of its sky's texels; all bits: the reference maps have the sky
 };
 layout(std430, binding = 2) readonly restrict buffer FaceJobs { FaceJob faceJobs[]; };
 

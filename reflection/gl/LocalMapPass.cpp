@@ -13,6 +13,7 @@
 #include "reflection/gl/Buffer.h"
 #include "reflection/gl/Program.h"
 #include "reflection/gl/ReferenceMapBuffer.h"
+#include "reflection/gl/SkyBuffer.h"
 
 namespace reflection {
 
@@ -20,7 +21,7 @@ namespace {
 
 // Bindings and layouts (std430) of data/shaders/local_map.comp and what it includes.
 constexpr GLuint mapsBinding = 0, viewsBinding = 1, jobsBinding = 2, reciprocalsBinding = 3,
-                 overlaysBinding = 4, meansBinding = 5;
+                 overlaysBinding = 4, meansBinding = 5, skiesBinding = 6;
 constexpr int groupSize = 8;
 /// Levels that one dispatch writes.
 constexpr int levelsAtOnce = 4;
@@ -40,8 +41,10 @@ struct FaceJob {
     float agreement = 0;
     std::uint32_t overlay = 0;
     std::array<std::int32_t, 4> overlayBox{};
+    std::uint32_t sky = SkyBuffer::none;
+    std::array<std::uint32_t, 3> padding{};  ///< to a multiple of the box's alignment
 };
-static_assert(sizeof(FaceJob) == 48);
+static_assert(sizeof(FaceJob) == 64);
 
 /// The processor asks no more.
 constexpr std::size_t mostCandidates = 16;
@@ -94,6 +97,7 @@ struct LocalMapPass::Impl {
     explicit Impl(std::span<const PackedReferenceMap> all, std::size_t budget) : maps(all, budget) {}
 
     ReferenceMapBuffer maps;
+    SkyBuffer skies;
     gl::Program fine, coarse;
     gl::Buffer views, jobs, reciprocals, overlays, means;
     std::size_t meansCapacity = 0;
@@ -130,8 +134,14 @@ LocalMapPass::~LocalMapPass() = default;
 bool LocalMapPass::usable() const {
     return impl_->maps.places() > 0;
 }
+void LocalMapPass::forgetSkies() {
+    impl_->skies.forget();
+}
 std::size_t LocalMapPass::bytes() const {
     return impl_->maps.bytes();
+}
+std::size_t LocalMapPass::skyBytes() const {
+    return impl_->skies.bytes();
 }
 double LocalMapPass::bytesPerTexel() const {
     const std::size_t texels = impl_->maps.heldTexels();
@@ -203,7 +213,14 @@ void LocalMapPass::Impl::describe(std::span<const LocalMapJob* const> batch) {
             viewData.push_back({at.words, at.chroma, level.faceSize(), level.chromaColumns(), c.offset,
                                 c.map->radianceScale()});
         }
+        // Without candidates a face is black, as on the processor.
+        const std::uint32_t sky =
+            candidates.empty() ? SkyBuffer::none : skies.firstTexelOf(request.lookup.sky);
         for (int k = 0; k < 6; ++k) {
+            face.sky = sky == SkyBuffer::none
+                           ? sky
+                           : sky + static_cast<std::uint32_t>(k) *
+                                       static_cast<std::uint32_t>(texelsOf(request.faceSize));
             face.face = k;
             face.layer = 6 * job->slot.layer + k;
             face.start = static_cast<std::uint32_t>(start);
@@ -264,6 +281,7 @@ void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, con
     hand(reciprocals, startData, reciprocalsBinding);
     hand(overlays, overlayData, overlaysBinding);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, mapsBinding, maps.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, skiesBinding, skies.name());
     if (meanCount > meansCapacity) {
         meansCapacity = 2 * meanCount;
         means = gl::Buffer::sized(meansCapacity * sizeof(glm::vec4));

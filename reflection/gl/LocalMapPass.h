@@ -29,16 +29,14 @@ struct LocalMapJob {
 ///
 /// For a frame: one dispatch for each face size in use, and for those of 16 texels and more one of a group a
 /// face for the coarse levels. Nothing is read back and nothing waited for. What travels each frame is 4
-/// bytes a texel (the reciprocals), 16 bytes a texel of the objects' boxes, and 48 bytes a face. The
+/// bytes a texel (the reciprocals), 16 bytes a texel of the objects' boxes, and 64 bytes a face. The
 /// reciprocals rather than the mesh's quads: quads of 28 bytes stand for 16 to 20 texels (measured), so that
 /// they would save 2.5 of the 4 bytes and the 1.3 ns a texel of filling in; but a frame's 80,000 texels are
 /// 0.3 MB and 0.1 ms of one core, a fifth of what tracing their rays takes, and looking for each texel's
 /// quad, or drawing quads into a target of their own with a barrier behind it, would tie the shader to the
 /// form of the mesh.
 ///
-/// Departures from lookUpRefined, within its agreement: each texel ends its search for itself, where the
-/// processor goes on until all of a vector have ended; eight texels of a row share an order of candidates,
-/// where the processor has as many as a vector holds.
+/// Colours are those of lookUpRefined but for the rounding of its arithmetic.
 ///
 /// Needs a current GL 4.5 context in every call and at destruction.
 class LocalMapPass {
@@ -60,7 +58,12 @@ class LocalMapPass {
     std::uint64_t build(const GridTracer& tracer, std::span<const LocalMapJob> jobs,
                         const LocalMapAtlas& atlas);
 
+    /// Call when skies that requests named (LookupOptions::sky) have changed or are gone: they are copied
+    /// once.
+    void forgetSkies();
+
     std::size_t bytes() const;         ///< allocated on the GPU for reference maps
+    std::size_t skyBytes() const;      ///< and for skies
     double bytesPerTexel() const;      ///< of those there now; 0 when there are none
     std::size_t mapsUploaded() const;  ///< so far
     std::uint32_t dispatches() const;  ///< of the last build

@@ -182,16 +182,20 @@ constexpr double oneStep = 1.0 / 32;
 // brightness may differ by the step of its dither, 1/32.
 constexpr double withinAgreement = oneStep + 1.0 / 32 + 0.02 * 40 * 0.025;
 
+/// Share of texels for which rounding may decide otherwise: the nearest block of chroma, an edge of the cube,
+/// an agreement just reached. Two, or one in 500.
+double fewTexels(int faceSize) {
+    return std::max(2.0 / (6 * faceSize * faceSize), 0.002);
+}
+
 TEST_F(LocalMapPassGlTest, oneLookupReadsTheSameTexels) {
     LocalMapPass pass(maps_, plenty);
     const std::vector<Candidate> candidates = candidatesAt(centre_, 1);
     for (const int n : localMapFaceSizes) {
         LocalMapRequest request = requestAt(centre_, n, candidates);
         request.lookup.lookups = 1;
-        // No search, no decision: but where the nearest block of chroma is decided by rounding, nothing may
-        // differ.
         alike("one_lookup_" + std::to_string(n), onGpu(pass, tracer_, request), onProcessor(tracer_, request),
-              oneStep, 50, 0.002);
+              oneStep, 50, fewTexels(n));
     }
     // Texels of the finest level, and of the coarser ones that smaller local maps read.
     EXPECT_LT(pass.bytesPerTexel(), 3);
@@ -206,10 +210,8 @@ TEST_F(LocalMapPassGlTest, whereNoMapAgreesTheBestOneWins) {
     for (const int n : localMapFaceSizes) {
         LocalMapRequest request = requestAt(centre_, n, candidates);
         request.lookup.lookups = 1;
-        // A vector of the processor's, of 4 to 16 texels, has one order where the GPU may have another: at
-        // the border between two orders, a few lines across the face, a few texels of n.
         alike("best_" + std::to_string(n), onGpu(pass, tracer_, request), onProcessor(tracer_, request),
-              oneStep, 40, 1.0 / 6 / n);
+              oneStep, 45, fewTexels(n));
     }
 }
 
@@ -219,11 +221,10 @@ TEST_F(LocalMapPassGlTest, refinedMapsAgreeWithTheProcessors) {
         const std::vector<Candidate> candidates = candidatesAt(centre_, count);
         for (const int n : localMapFaceSizes) {
             const LocalMapRequest request = requestAt(centre_, n, candidates);
-            // One map: the same search, ended sooner. Several: along silhouettes, a line of about 5 n of 6
-            // n^2 texels, none may agree, and which is asked first and searched on decides.
-            const bool one = count == 1;
+            // The same steps in the same order: decisions may differ where rounding makes them, here and
+            // there a texel (none on llvmpipe, which rounds as the processor does).
             alike("refined_" + std::to_string(count) + "_" + std::to_string(n), onGpu(pass, tracer_, request),
-                  onProcessor(tracer_, request), withinAgreement, one ? 50 : 30, one ? 0.001 : 5.0 / 6 / n);
+                  onProcessor(tracer_, request), withinAgreement, 45, fewTexels(n));
         }
     }
 }
@@ -260,6 +261,38 @@ TEST_F(LocalMapPassGlTest, openSkyIsSkyInEveryLevel) {
     }
 }
 
+TEST_F(LocalMapPassGlTest, aSkyOfItsOwnShowsWhereTheHeightfieldDoes) {
+    LocalMapPass pass(maps_, plenty);
+    const std::vector<Candidate> candidates = candidatesAt(centre_, 3);
+    for (const int n : {128, 32}) {
+        LocalMap sky;
+        sky.resize(n);
+        for (std::size_t i = 0; i < sky.red.size(); ++i) {
+            const float shade = 0.5f + static_cast<float>(i % 97) / 97;
+            sky.red[i] = shade;
+            sky.green[i] = sky.blue[i] = 3 * shade;
+        }
+        LocalMapRequest request = requestAt(centre_, n, candidates);
+        request.lookup.sky = &sky;
+        const PackedMips actual = onGpu(pass, tracer_, request);
+        alike("own_sky_" + std::to_string(n), actual, onProcessor(tracer_, request), withinAgreement, 45,
+              0.002);
+        // Another in its place is taken when told.
+        for (float& red : sky.red) red *= 2;
+        EXPECT_EQ(onGpu(pass, tracer_, request).texels, actual.texels);
+        pass.forgetSkies();
+        alike("other_sky_" + std::to_string(n), onGpu(pass, tracer_, request), onProcessor(tracer_, request),
+              withinAgreement, 45, fewTexels(n));
+        pass.forgetSkies();
+    }
+    LocalMap sky;
+    sky.resize(16);
+    std::fill(sky.red.begin(), sky.red.end(), 1.0f);
+    LocalMapRequest request = requestAt(centre_, 16, {});
+    request.lookup.sky = &sky;
+    EXPECT_THAT(onGpu(pass, tracer_, request).texels, testing::Each(0u)) << "black without candidates";
+}
+
 /// Two boards that face the centre: one near, one behind the street's wall.
 std::vector<MovingObject> boards() {
     const auto board = [](const glm::vec3& middle, const glm::vec3& across, const glm::vec3& colour) {
@@ -283,7 +316,7 @@ TEST_F(LocalMapPassGlTest, movingObjectsAppearBeforeTheStreetAndHideBehindIt) {
         const LocalMapRequest request = requestAt(centre_, n, candidates);
         const PackedMips actual = onGpu(pass, tracer_, request, objects);
         alike("objects_" + std::to_string(n), actual, onProcessor(tracer_, request, objects), withinAgreement,
-              30, 5.0 / 12 / n);
+              45, fewTexels(n));
         std::size_t red = 0, green = 0;
         for (const glm::vec3& c : unpacked(actual, 0)) {
             red += c.r > 4 * c.g ? 1 : 0;
