@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "app/commands/Benches.h"
+#include "app/commands/CityTriangles.h"
 #include "app/commands/MirrorMask.h"
 #include "app/commands/PreparedScene.h"
 #include "app/commands/Version.h"
@@ -40,9 +41,31 @@ View viewOf(const vehicles::VehiclePose& pose, double distance, glm::ivec2 size)
     return lookAt(eye, middle, glm::radians(fov), size);
 }
 
+/// The share of a vehicle's near side that is seen from the eye, past all that stands in the city.
+float seenShare(const reflection::TriangleTracer& triangles, const glm::dvec3& eye,
+                const vehicles::VehiclePose& pose) {
+    constexpr float halfLength = 2.6f;  // metres; what is nearer to its middle is behind its side
+    const glm::vec3 forward(std::cos(pose.heading), std::sin(pose.heading), 0);
+    std::vector<float> x, y, z;
+    for (int step = -12; step <= 12; ++step)  // closer together than a pole is wide
+        for (const float height : {0.3f, 0.7f, 1.2f}) {
+            const float along = 0.15f * static_cast<float>(step);
+            const glm::vec3 d = glm::vec3(pose.position - eye) + along * forward + glm::vec3(0, 0, height);
+            x.push_back(d.x);
+            y.push_back(d.y);
+            z.push_back(d.z);
+        }
+    std::vector<float> t(x.size());
+    triangles.traceFan(glm::vec3(eye), x, y, z, t);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < t.size(); ++i)
+        seen += (1 - t[i]) * glm::length(glm::vec3(x[i], y[i], z[i])) < halfLength ? 1 : 0;
+    return static_cast<float>(seen) / static_cast<float>(t.size());
+}
+
 /// The vehicle that is seen best from that distance: nothing of the city between, and dark paint, which shows
 /// reflections.
-Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, double distance,
+Shot chooseShot(const FrameScene& scene, const reflection::TriangleTracer& triangles, double distance,
                 glm::ivec2 size) {
     Shot best;
     float bestScore = -std::numeric_limits<float>::infinity();
@@ -50,11 +73,6 @@ Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, do
         const vehicles::VehiclePose& pose = scene.vehicles[i];
         if (pose.model > 1) continue;  // hatchbacks and saloons
         const View view = viewOf(pose, distance, size);
-        const glm::vec3 eye(view.eye);
-        bool clear = true;
-        for (const double side : {-1.5, 0.0, 1.5})
-            clear = clear && !prepared.tracer->occluded(
-                                 eye, glm::vec3(pose.position + glm::dvec3(side, side, 1.0)), 0.5f);
         // Nobody else near the line of sight.
         float room = 10;
         for (const vehicles::VehiclePose& other : scene.vehicles) {
@@ -66,7 +84,8 @@ Shot chooseShot(const FrameScene& scene, const PreparedReflections& prepared, do
                 std::min(room, static_cast<float>(glm::length(other.position - view.eye - along * towards)));
         }
         const float brightness = (pose.paint.r + pose.paint.g + pose.paint.b) / 3;
-        const float score = (clear ? 100.0f : 0.0f) + std::min(room, 4.0f) * 5 - brightness * 6;
+        const float score =
+            300 * seenShare(triangles, view.eye, pose) + std::min(room, 4.0f) * 5 - brightness * 6;
         if (score > bestScore) {
             bestScore = score;
             best = {i, view};
@@ -97,6 +116,9 @@ int benchStills(const Options& options) {
     std::vector<std::vector<std::string>> table{{"picture", "PSNR dB", "FLIP"}};
     if (!prepared.complete) return reportBench(options, results, table);
 
+    reflection::TriangleTracer triangles;
+    addCity(triangles, scene.city);
+    triangles.commit();
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
     const OffscreenTarget target(options.resolution);
     MirrorMask mirrors;
@@ -112,7 +134,7 @@ int benchStills(const Options& options) {
             spdlog::error("the city has no vehicles to look at; ask for some with --cars");
             return exitFailed;
         }
-        const Shot shot = chooseShot(frame, prepared, distance, options.resolution);
+        const Shot shot = chooseShot(frame, triangles, distance, options.resolution);
         frame.views = {shot.view};
         renderer.prepare(frame);
         std::vector<SeenVehicle> seen;

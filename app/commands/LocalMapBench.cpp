@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "app/commands/CityTriangles.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/frame/SkyMaps.h"
 #include "app/frame/ToneMap.h"
@@ -19,7 +20,6 @@
 #include "reflection/reference_maps/CubeMapping.h"
 #include "reflection/reference_maps/Selection.h"
 #include "reflection/truth/ImageError.h"
-#include "reflection/truth/TriangleTracer.h"
 
 namespace app {
 
@@ -167,11 +167,7 @@ std::vector<LocalMapRow> runLocalMapBench(const city::CityModel& city, const Pre
     }
 
     reflection::TriangleTracer triangles;
-    for (const city::Chunk& chunk : city.chunks) triangles.add(chunk.mesh);
-    for (const city::Placement& placement : city.placements)
-        if (!city.prototypes[placement.prototype].levels.empty())
-            triangles.add(city.prototypes[placement.prototype].levels.front().mesh,
-                          placement.worldFromPrototype);
+    addCity(triangles, city);
     triangles.commit();
 
     const std::vector<Place> places = choosePlaces(city, options);
