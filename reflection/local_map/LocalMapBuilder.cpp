@@ -66,8 +66,55 @@ void LocalMapBuilder::resizePlanes(int faceSize) {
     for (std::vector<float>* plane : {&px_, &py_, &pz_, &weight_}) plane->resize(texels);
 }
 
+namespace {
+
+/// A quad of Size x Size texels: bilinear at the texels' centres.
+template <int Size>
+void fillQuad(const LocalMapMesh::Quad& q, float* texels, std::size_t row) {
+    constexpr float step = 1.0f / static_cast<float>(Size);
+    for (int y = 0; y < Size; ++y, texels += row) {
+        const float v = (static_cast<float>(y) + 0.5f) * step;
+        const float left = q.corner[0] + v * (q.corner[2] - q.corner[0]);
+        const float right = q.corner[1] + v * (q.corner[3] - q.corner[1]);
+        for (int x = 0; x < Size; ++x)
+            texels[x] = q.smooth ? left + (static_cast<float>(x) + 0.5f) * step * (right - left) : q.centre;
+    }
+}
+
+}  // namespace
+
+void LocalMapBuilder::fillAligned(int faceSize, int texelsPerUnit) {
+    const auto row = static_cast<std::size_t>(faceSize);
+    const auto scale = static_cast<std::size_t>(texelsPerUnit);
+    for (const LocalMapMesh::Quad& q : mesh_.quads()) {
+        float* texels = reciprocal_.data() + q.y * scale * row + q.x * scale;
+        switch (q.size * texelsPerUnit) {
+            case 1:
+                fillQuad<1>(q, texels, row);
+                break;
+            case 2:
+                fillQuad<2>(q, texels, row);
+                break;
+            case 4:
+                fillQuad<4>(q, texels, row);
+                break;
+            case 8:
+                fillQuad<8>(q, texels, row);
+                break;
+            default:
+                fillQuad<16>(q, texels, row);
+                break;
+        }
+    }
+}
+
 void LocalMapBuilder::fillReciprocal(int faceSize) {
     reciprocal_.resize(static_cast<std::size_t>(faceSize) * static_cast<std::size_t>(faceSize));
+    const int perUnit = faceSize / mesh_.latticeSize();
+    if (perUnit * mesh_.latticeSize() == faceSize && mesh_.greatestQuad() * perUnit <= 16) {
+        fillAligned(faceSize, perUnit);
+        return;
+    }
     // Texels whose centre lies in a quad, in the quad's own coordinates.
     const float latticeFromTexel = static_cast<float>(mesh_.latticeSize()) / static_cast<float>(faceSize);
     const float texelFromLattice = 1 / latticeFromTexel;

@@ -62,6 +62,8 @@ class LocalMapBuilder {
 
   private:
     void fillReciprocal(int faceSize);
+    /// Where quads' borders are texels' borders and no quad has more than 16 x 16 texels, a power of two.
+    void fillAligned(int faceSize, int texelsPerUnit);
     void fillPaper(const LocalMapRequest& request, int face);
     void fillBlend(const LocalMapRequest& request, int face);
     void fillBox(const LocalMapRequest& request, int face);

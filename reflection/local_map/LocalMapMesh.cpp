@@ -59,6 +59,7 @@ void LocalMapMesh::traceRequested(const GridTracer& tracer, const glm::vec3& cen
     for (std::size_t i = 0; i < count; ++i)
         nodes_[wanted_[i]] = t_[i] >= nearest ? 1.0f / t_[i] : 1.0f / nearest;
     rays_ += static_cast<std::uint32_t>(count);
+    known_.insert(known_.end(), wanted_.begin(), wanted_.end());
     wanted_.clear();
     wantedAt_.clear();
 }
@@ -68,11 +69,18 @@ void LocalMapMesh::build(const GridTracer& tracer, const glm::vec3& centre, int 
     const int depth = std::clamp(options.depth, 0, 8);
     const int base = std::clamp(options.baseCells, 1, greatestLattice >> depth);
     lattice_ = base << depth;
+    greatest_ = 1 << depth;
     rays_ = 0;
     quads_.clear();
     const auto side = static_cast<std::uint32_t>(lattice_ + 1);
     const std::uint32_t centres = side * side;
-    nodes_.assign(centres + static_cast<std::size_t>(lattice_) * static_cast<std::size_t>(lattice_), unknown);
+    const std::size_t nodes =
+        centres + static_cast<std::size_t>(lattice_) * static_cast<std::size_t>(lattice_);
+    if (nodes_.size() == nodes)
+        for (std::uint32_t node : known_) nodes_[node] = unknown;
+    else
+        nodes_.assign(nodes, unknown);
+    known_.clear();
 
     const bool planarity = options.criterion == RefineCriterion::planarity;
     const auto node = [side](int x, int y) {

@@ -49,6 +49,7 @@ class LocalMapMesh {
 
     std::span<const Quad> quads() const { return quads_; }
     int latticeSize() const { return lattice_; }
+    int greatestQuad() const { return greatest_; }  ///< side of an undivided quad, in lattice units
     std::uint32_t raysTraced() const { return rays_; }
 
   private:
@@ -58,10 +59,11 @@ class LocalMapMesh {
     void request(std::uint32_t node, float u, float v);
     void traceRequested(const GridTracer& tracer, const glm::vec3& centre, int face);
 
-    int lattice_ = 0;
+    int lattice_ = 0, greatest_ = 0;
     std::uint32_t rays_ = 0;
-    std::vector<float>
-        nodes_;  ///< 1/t by lattice point, (lattice+1)^2, then by centre of the smallest cells, lattice^2
+    /// 1/t by lattice point, (lattice+1)^2, then by centre of the smallest cells, lattice^2.
+    std::vector<float> nodes_;
+    std::vector<std::uint32_t> known_;  ///< those that have a value, to be cleared for the next face
     std::vector<Quad> quads_;
     std::vector<Cell> active_, next_;
     std::vector<std::uint32_t> wanted_;

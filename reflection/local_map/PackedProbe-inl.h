@@ -76,42 +76,15 @@ struct Probe {
     VI chromaBlock;
 };
 
-/// Two neighbours in a row of texels.
-struct WordPair {
-    VW left, right;
-};
-
-/// The 20-bit words of a bordered texel and the next. One load of 64 bits a lane: loads are what a lookup
-/// waits for.
-HWY_INLINE WordPair fetchPair(const MapView& map, VI index) {
+/// The 20-bit word of a bordered texel.
+HWY_INLINE VW fetchWord(const MapView& map, VI index) {
     const Int di;
     const Word dw;
     const VI five = hn::Add(hn::ShiftLeft<2>(index), index);
     const VI byte = hn::ShiftRight<1>(five);
-    const VI shift = hn::ShiftLeft<2>(hn::And(index, hn::Set(di, 1)));
-    const VW mask = hn::Set(dw, 0xfffffu);
-#if HWY_TARGET == HWY_SCALAR
-    const VW first = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.words), byte);
-    const VW second = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.words),
-                                       hn::Add(byte, hn::Set(di, 2)));
-    const VW shifted = hn::Shr(second, hn::BitCast(dw, hn::Add(shift, hn::Set(di, 4))));
-    return {hn::And(hn::Shr(first, hn::BitCast(dw, shift)), mask), hn::And(shifted, mask)};
-#else
-    const hn::Repartition<std::uint64_t, Word> dl;
-    const hn::Repartition<std::int64_t, Int> dli;
-    const auto* words = reinterpret_cast<const std::uint64_t*>(map.words);
-    const auto half = [&](auto bytes, auto shifts) {
-        const auto raw = hn::GatherOffset(dl, words, hn::PromoteTo(dli, bytes));
-        return hn::Shr(raw, hn::BitCast(dl, hn::PromoteTo(dli, shifts)));
-    };
-    const hn::Half<Int> dh;
-    const auto low = hn::BitCast(dw, half(hn::LowerHalf(dh, byte), hn::LowerHalf(dh, shift)));
-    const auto high = hn::BitCast(dw, half(hn::UpperHalf(dh, byte), hn::UpperHalf(dh, shift)));
-    // The lower and the upper 32 bits of every lane of 64.
-    const VW lower = hn::ConcatEven(dw, high, low), upper = hn::ConcatOdd(dw, high, low);
-    const VW right = hn::Or(hn::ShiftRight<20>(lower), hn::ShiftLeft<12>(upper));
-    return {hn::And(lower, mask), hn::And(right, mask)};
-#endif
+    const VW raw = hn::GatherOffset(dw, reinterpret_cast<const std::uint32_t*>(map.words), byte);
+    const VI odd = hn::And(index, hn::Set(di, 1));
+    return hn::And(hn::Shr(raw, hn::BitCast(dw, hn::ShiftLeft<2>(odd))), hn::Set(dw, 0xfffffu));
 }
 
 /// Over a plane nearness falls by more than this share from one texel to the next only within three texels of
@@ -134,8 +107,10 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
     const VI ix = hn::ConvertTo(di, u), iy = hn::ConvertTo(di, v);
     const VF fx = hn::Sub(u, hn::ConvertTo(d, ix)), fy = hn::Sub(v, hn::ConvertTo(d, iy));
     const VI index = borderedIndex(p.face, ix, iy, map.faceSize);
-    const WordPair top = fetchPair(map, index);
-    const WordPair bottom = fetchPair(map, hn::Add(index, hn::Set(di, map.faceSize + 2)));
+    const VI one = hn::Set(di, 1);
+    const VI nextRow = hn::Add(index, hn::Set(di, map.faceSize + 2));
+    const VW w00 = fetchWord(map, index), w10 = fetchWord(map, hn::Add(index, one));
+    const VW w01 = fetchWord(map, nextRow), w11 = fetchWord(map, hn::Add(nextRow, one));
     const auto bilinear = [&](VF a, VF b, VF c, VF e) {
         const VF above = hn::MulAdd(fx, hn::Sub(b, a), a), below = hn::MulAdd(fx, hn::Sub(e, c), c);
         return hn::MulAdd(fy, hn::Sub(below, above), above);
@@ -150,8 +125,8 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
         return hn::BitCast(d, hn::Add(hn::ShiftLeft<PackedReferenceMap::sumMantissaShift>(code),
                                       hn::Set(dw, PackedReferenceMap::sumExponentBias << 23)));
     };
-    const VF n00 = nearness(top.left), n10 = nearness(top.right);
-    const VF n01 = nearness(bottom.left), n11 = nearness(bottom.right);
+    const VF n00 = nearness(w00), n10 = nearness(w10);
+    const VF n01 = nearness(w01), n11 = nearness(w11);
     const VF nearest = hn::Max(hn::Max(n00, n10), hn::Max(n01, n11));
     const VF farthest = hn::Min(hn::Min(n00, n10), hn::Min(n01, n11));
     const MF torn = hn::Lt(farthest, hn::Mul(nearest, hn::Set(d, 1 - tornShare)));
@@ -161,8 +136,7 @@ HWY_INLINE Probe probe(const MapView& map, VF x, VF y, VF z) {
 
     Probe result;
     result.disagreement = hn::Sub(hn::Mul(p.depth, met), hn::Set(d, 1.0f));
-    result.sum = bilinear(sum(top.left), sum(top.right), sum(bottom.left), sum(bottom.right));
-    const VI one = hn::Set(di, 1);
+    result.sum = bilinear(sum(w00), sum(w10), sum(w01), sum(w11));
     const VI columns = hn::Set(di, map.chromaColumns);
     const VI rows = hn::Set(di, (map.faceSize + 2) / 2);
     const VI bx = hn::Min(hn::ShiftRight<2>(hn::ConvertTo(di, hn::Add(u, half))), hn::Sub(columns, one));
