@@ -91,7 +91,7 @@ std::string referenceMapsOf(const city::CityModel& city, const Options& options)
 }
 
 void printCity(const Options& options) {
-    const city::CityModel city = loadCityOf(options);
+    const city::CityModel city = loadCityOf(options, false);
     std::size_t buildings = 0;
     for (const city::Chunk& chunk : city.chunks) buildings += chunk.kind == city::ChunkKind::building;
     std::size_t carLanes = 0, tramLanes = 0;

@@ -47,11 +47,13 @@ double laneLength(const city::Lane& lane) {
     return length;
 }
 
-city::CityModel loadCityOf(const Options& options) {
+city::CityModel loadCityOf(const Options& options, bool tellNotes) {
     const Stopwatch watch;
     city::CityModel city = makeCity(options);
-    for (const std::string& note : city.notes) spdlog::info("{}: {}", options.city, note);
-    spdlog::info("{}: {} triangles, {} lanes, ready after {:.1f} s", options.city, city.triangleCount(),
+    const std::string name = std::filesystem::path(options.city).filename().string();
+    if (tellNotes)
+        for (const std::string& note : city.notes) spdlog::info("{}: {}", name, note);
+    spdlog::info("{}: {} triangles, {} lanes, ready after {:.1f} s", name, city.triangleCount(),
                  city.roads.lanes.size(), watch.elapsed() / 1000);
     return city;
 }

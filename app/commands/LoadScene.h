@@ -18,9 +18,10 @@ struct Scene {
     Lighting lighting;
 };
 
-/// The city that the options name: built in or from a file, with its importer's notes on stderr. Throws
+/// The city that the options name: built in or from a file, with its importer's notes on stderr unless the
+/// caller tells them otherwise. Throws
 /// std::runtime_error or std::invalid_argument, one sentence, when it cannot be had.
-city::CityModel loadCityOf(const Options& options);
+city::CityModel loadCityOf(const Options& options, bool tellNotes = true);
 
 /// The whole scene. `--car` takes the place of every model but the trams.
 Scene loadScene(const Options& options);
