@@ -88,9 +88,10 @@ TraceResult walk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         alignas(16) const double known[2] = {static_cast<double>(i), static_cast<double>(j)};
         cell = hn::Load(p, known);
     }
+    const double inverseRise = 1 / rise;
     // Nothing is hit after tLast. The slack is for the rounding of a hit's t to float.
     const double limit = static_cast<double>(tMax) * (1 + 1e-6) + 1e-40;
-    const double tLast = rise < 0 ? limit : std::min((scale.top - startLevel) / rise, limit);
+    const double tLast = rise < 0 ? limit : std::min((scale.top - startLevel) * inverseRise, limit);
 
     const MP backwards = hn::Lt(direction, zero);
     std::uint8_t quadrant[8];
@@ -136,14 +137,14 @@ TraceResult walk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         const double own = static_cast<double>(static_cast<int>(entry >> 16));
         const double floor = own + scale.lifts[(entry >> 12) & 15];
         const bool known = (entry & 63) != 0;
-        if ((level > floor + scale.clearance) & known) [[likely]] {
+        if (level > floor + scale.clearance && known) [[likely]] {
             const auto extent =
                 hn::And(hn::Set(Cells(), static_cast<std::int32_t>(entry)), hn::Load(Cells(), fields));
             advance(hn::Mul(hn::PromoteTo(p, extent), unit));
             if (level <= floor + scale.slack) {
                 // To a point certainly above the level, and no farther than the rectangle. Most often the
                 // cell's column is about as high, and the ray sinks through its top before the cell ends.
-                const double tLanding = (floor + scale.landing - startLevel) / rise;
+                const double tLanding = (floor + scale.landing - startLevel) * inverseRise;
                 const VP place = hn::MulAdd(hn::Set(p, tLanding), speed, start);
                 cell = hn::Floor(place);
                 if (!hn::AllTrue(p, within(place, cell))) [[unlikely]]
@@ -177,11 +178,11 @@ TraceResult walk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         // certain.
         const VP place = hn::MulAdd(hn::Set(p, t), speed, start);
         const VP under = hn::Floor(place);
-        if (!hn::AllTrue(p, hn::Or(within(place, under), crossed))) [[unlikely]]
-            return carefulWalk(grid, ray, tMax);
         if (!(t <= tLast)) return miss;
         cell = hn::IfThenElse(crossed, hn::Sub(exit, nearSide), under);
-        if (!hn::AllTrue(p, hn::And(hn::Ge(cell, zero), hn::Lt(cell, size)))) return miss;
+        const MP certain = hn::Or(within(place, under), crossed);
+        if (!hn::AllTrue(p, hn::And(certain, hn::And(hn::Ge(cell, zero), hn::Lt(cell, size))))) [[unlikely]]
+            return hn::AllTrue(p, certain) ? miss : carefulWalk(grid, ray, tMax);
     }
 }
 
