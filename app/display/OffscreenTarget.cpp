@@ -42,12 +42,13 @@ std::vector<std::pair<std::string, std::string>> contextLimits() {
         const char* name;
         GLenum value;
     };
-    constexpr std::array<Limit, 8> limits{{{"texture size", GL_MAX_TEXTURE_SIZE},
+    constexpr std::array<Limit, 9> limits{{{"texture size", GL_MAX_TEXTURE_SIZE},
                                            {"cube map size", GL_MAX_CUBE_MAP_TEXTURE_SIZE},
                                            {"array layers", GL_MAX_ARRAY_TEXTURE_LAYERS},
                                            {"texture units", GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS},
                                            {"uniform block bytes", GL_MAX_UNIFORM_BLOCK_SIZE},
                                            {"storage block bytes", GL_MAX_SHADER_STORAGE_BLOCK_SIZE},
+                                           {"buffer texture texels", GL_MAX_TEXTURE_BUFFER_SIZE},
                                            {"samples", GL_MAX_SAMPLES},
                                            {"compute invocations", GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS}}};
     std::vector<std::pair<std::string, std::string>> values;

@@ -10,7 +10,7 @@ const uint sumExponentBias = 127u - 16u;
 const float skyDepth = 8192.0;
 const float infinity = 3.0e38;  // finite: GLSL promises nothing for the real one
 
-layout(std430, binding = 0) readonly restrict buffer ReferenceMaps { uint packedMaps[]; };
+layout(binding = 0) uniform usamplerBuffer packedMaps;
 
 /// One level of a reference map, as seen from a local map's centre (C++: LocalMapPass::MapView).
 struct MapView {
@@ -50,14 +50,14 @@ uvec2 fetchPair(MapView map, uint index) {
     uint bit = 20u * index;
     uint at = map.words + (bit >> 5);
     uint shift = bit & 31u;
-    uint low = packedMaps[at], high = packedMaps[at + 1u];
+    uint low = texelFetch(packedMaps, int(at)).r, high = texelFetch(packedMaps, int(at) + 1).r;
     // A shift by 32 is undefined: (x << 1) << (31 - shift).
     uint first = (low >> shift) | ((high << 1) << (31u - shift));
     shift += 20u;
     if (shift >= 32u) {
         shift -= 32u;
         low = high;
-        high = shift > 12u ? packedMaps[at + 2u] : 0u;
+        high = shift > 12u ? texelFetch(packedMaps, int(at) + 2).r : 0u;
     }
     uint second = (low >> shift) | ((high << 1) << (31u - shift));
     return uvec2(first, second) & 0xfffffu;
@@ -103,7 +103,7 @@ Probe probe(MapView map, vec3 point) {
 }
 
 vec3 colourOf(MapView map, float sum, int chromaBlock) {
-    uint shares = packedMaps[map.chroma + uint(chromaBlock >> 1)] >> (16 * (chromaBlock & 1));
+    uint shares = texelFetch(packedMaps, int(map.chroma) + (chromaBlock >> 1)).r >> (16 * (chromaBlock & 1));
     float red = float(shares & 0xffu) / 255.0;
     float blue = float((shares >> 8) & 0xffu) / 255.0;
     return sum * map.radianceScale * vec3(red, max(0.0, 1.0 - red - blue), blue);

@@ -280,7 +280,7 @@ void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, con
     hand(jobs, jobData, jobsBinding);
     hand(reciprocals, startData, reciprocalsBinding);
     hand(overlays, overlayData, overlaysBinding);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, mapsBinding, maps.name());
+    glBindTextureUnit(mapsBinding, maps.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, skiesBinding, skies.name());
     if (meanCount > meansCapacity) {
         meansCapacity = 2 * meanCount;

@@ -48,7 +48,7 @@ class LocalMapPass {
     LocalMapPass(const LocalMapPass&) = delete;
     LocalMapPass& operator=(const LocalMapPass&) = delete;
 
-    /// False where the implementation does not allow a storage block as large as one of the maps: build them
+    /// False where there is no room on the GPU for even one of the reference maps: build local maps
     /// on the processor then.
     bool usable() const;
 

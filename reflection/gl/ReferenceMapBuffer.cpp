@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reflection/gl/Buffer.h"
+#include "reflection/gl/Texture.h"
 
 namespace reflection {
 
@@ -38,6 +39,7 @@ struct ReferenceMapBuffer::Impl {
         std::uint64_t lastBatch = 0;
     };
     gl::Buffer buffer;
+    gl::Texture texels;  ///< of the buffer
     gl::Buffer staging;
     std::size_t placeUints = 0;
     std::vector<Place> places;
@@ -54,15 +56,23 @@ ReferenceMapBuffer::ReferenceMapBuffer(std::span<const PackedReferenceMap> maps,
     : impl_(std::make_unique<Impl>()) {
     for (const PackedReferenceMap& map : maps) impl_->placeUints = std::max(impl_->placeUints, uintsOf(map));
     GLint64 greatest = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &greatest);
+    glGetInteger64v(GL_MAX_TEXTURE_BUFFER_SIZE, &greatest);
     const std::size_t placeBytes = 4 * impl_->placeUints;
     std::size_t count = 0;
     if (placeBytes > 0) {
-        const std::size_t allowed = static_cast<std::size_t>(std::max<GLint64>(greatest, 0)) / placeBytes;
+        const std::size_t allowed = 4 * static_cast<std::size_t>(std::max<GLint64>(greatest, 0)) / placeBytes;
         count = std::min({maps.size(), std::max<std::size_t>(budget / placeBytes, 1), allowed});
     }
-    impl_->places.resize(count);
+    while (glGetError() != GL_NO_ERROR) {
+        // Whatever was wrong before is not about this memory.
+    }
     impl_->buffer = gl::Buffer::sized(std::max<std::size_t>(count * placeBytes, 4));
+    while (count > 0 && glGetError() == GL_OUT_OF_MEMORY) {
+        count /= 2;
+        impl_->buffer = gl::Buffer::sized(std::max<std::size_t>(count * placeBytes, 4));
+    }
+    impl_->places.resize(count);
+    impl_->texels = gl::Texture::buffer(GL_R32UI, impl_->buffer.name());
     impl_->staging = gl::Buffer::create();
 }
 
@@ -136,7 +146,7 @@ BufferedLevel ReferenceMapBuffer::levelOf(const PackedReferenceMap& map,
 }
 
 std::uint32_t ReferenceMapBuffer::name() const {
-    return impl_->buffer.name();
+    return impl_->texels.name();
 }
 std::size_t ReferenceMapBuffer::bytes() const {
     return 4 * impl_->places.size() * impl_->placeUints;

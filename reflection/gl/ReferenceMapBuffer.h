@@ -17,15 +17,18 @@ struct BufferedLevel {
 };
 
 /// Packed reference maps on the GPU, as they are in memory (2.8 bytes a texel): one buffer of equal places, a
-/// map with all its levels in each. A map is uploaded when it is first asked for; where the budget does not
-/// hold all of them, the one asked for longest ago gives up its place.
+/// map with all its levels in each. A map is uploaded when it is first asked for; where there are fewer
+/// places than maps, the one asked for longest ago gives up its place.
+///
+/// A buffer texture of words rather than a storage block: both cost the same on llvmpipe, and 2^27 words (512
+/// MiB) are commonly allowed where storage blocks may end at 128 MiB.
 ///
 /// Uploads are ordered by the GPU behind what still reads the old content: nothing waits. Needs a current
 /// GL 4.5 context in every call and at destruction.
 class ReferenceMapBuffer {
   public:
-    /// Room for `maps` within `budget` bytes and what the implementation allows a shader storage block; one
-    /// map however large the budget, unless the implementation does not allow even that. The maps must
+    /// Room for `maps` within `budget` bytes, what the implementation allows a buffer texture, and what
+    /// memory there is: one map however small the budget, none where not even that can be had. The maps must
     /// outlive this.
     ReferenceMapBuffer(std::span<const PackedReferenceMap> maps, std::size_t budget);
     ~ReferenceMapBuffer();
@@ -45,7 +48,7 @@ class ReferenceMapBuffer {
     /// Of a map that is held. Precondition: `level` is one of its levels.
     BufferedLevel levelOf(const PackedReferenceMap& map, const PackedReferenceMap::Level& level) const;
 
-    std::uint32_t name() const;      ///< GL name, for binding as a shader storage buffer
+    std::uint32_t name() const;      ///< GL name of a buffer texture of GL_R32UI
     std::size_t bytes() const;       ///< allocated on the GPU
     std::size_t heldBytes() const;   ///< of maps that are there
     std::size_t heldTexels() const;  ///< all levels

@@ -48,6 +48,12 @@ class Texture {
         glTextureStorage3D(t.name(), levels, format, faceSize, faceSize, 6 * cubes);
         return t;
     }
+    /// A buffer's contents as texels, as many as the implementation allows.
+    static Texture buffer(GLenum format, GLuint buffer) {
+        Texture t(GL_TEXTURE_BUFFER);
+        glTextureBuffer(t.name(), format, buffer);
+        return t;
+    }
     /// Other eyes on the storage of `original`: a range of its layers as a texture of another target.
     static Texture view(GLenum target, GLuint original, GLenum format, int firstLevel, int levels,
                         int firstLayer, int layers) {
