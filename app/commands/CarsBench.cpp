@@ -140,6 +140,7 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         const auto add = [&](std::string name, ReflectionMethod method, MemVariant variant,
                              MapsOn mapsOn = MapsOn::cpu) {
             ReflectionSettings settings;
+            settings.shareMaps = false;  // each vehicle a map of its own
             settings.method = method;
             settings.variant = variant;
             settings.quality = options.quality;

@@ -54,6 +54,7 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
             options.errorThreshold = 0.25f;
             break;
     }
+    options.share = settings.shareMaps;
     // The paper rebuilds every visible vehicle's map every frame; re-rendering is the yardstick and does so
     // too.
     options.everyFrame = settings.everyFrame || settings.method == ReflectionMethod::rerender ||
@@ -331,6 +332,7 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     engine.counters.visible = engine.plan.visible;
     engine.counters.rebuilt = static_cast<std::uint32_t>(engine.plan.jobs.size());
     engine.counters.fresh = engine.plan.fresh;
+    engine.counters.shared = engine.plan.shared;
     engine.counters.postponed = engine.plan.postponed;
     engine.counters.texels = engine.plan.texels;
     engine.counters.localMapBytes = engine.atlas.bytes() + (engine.gpu ? engine.gpu->skyBytes() : 0);

@@ -25,6 +25,7 @@ struct ReflectionSettings {
     Quality quality = Quality::medium;
     bool everyFrame = false;     ///< rebuild every visible map every frame
     bool vehiclesInMaps = true;  ///< other vehicles appear in each vehicle's map
+    bool shareMaps = true;       ///< small vehicles may show a neighbour's map
     MapsOn mapsOn = MapsOn::automatic;
     std::size_t gpuMapBytes =
         std::size_t{512} << 20;  ///< for reference maps on the GPU at most; those in use take turns there
@@ -37,7 +38,7 @@ reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int f
 std::size_t candidateCount(const ReflectionSettings& settings);
 
 struct ReflectionCounters {
-    std::uint32_t visible = 0, rebuilt = 0, fresh = 0, postponed = 0;
+    std::uint32_t visible = 0, rebuilt = 0, fresh = 0, shared = 0, postponed = 0;
     std::uint64_t texels = 0, rays = 0;
     std::size_t localMapBytes = 0;         ///< on the GPU, skies for those that it builds included
     std::size_t referenceMapBytes = 0;     ///< in main memory

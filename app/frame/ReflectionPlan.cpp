@@ -16,6 +16,13 @@ constexpr double neighbourRange = 15;
 /// Frames a map outlives its vehicle's last sight: a car behind a tree or a tour's cut back keeps its map for
 /// a second.
 constexpr std::uint64_t framesKept = 60;
+/// Centres of two vehicles are no nearer to each other than this, metres: the width of a car.
+constexpr double nearestNeighbour = 1.7;
+
+/// Pixels by which a reflected feature is off where the map's centre is off by so many metres.
+double errorOnScreen(float diameterPixels, double metres) {
+    return static_cast<double>(diameterPixels) * metres / (3.14159265 * streetHalfWidth);
+}
 
 }  // namespace
 
@@ -57,6 +64,24 @@ void ReflectionPlanner::release(reflection::LocalMapSlot slot) {
     if (slot.valid()) free_[static_cast<std::size_t>(slot.sizeClass)].push_back(slot.layer);
 }
 
+const ReflectionPlanner::Held* ReflectionPlanner::lenderFor(const MapJob& job, float diameterPixels,
+                                                            float threshold,
+                                                            std::span<const Held* const> lenders) {
+    if (errorOnScreen(diameterPixels, nearestNeighbour) >= threshold) return nullptr;
+    const Held* best = nullptr;
+    double least = threshold;
+    for (const Held* lender : lenders) {
+        if (lender->slot.sizeClass > job.slot.sizeClass) continue;  // coarser than wanted
+        const double error = errorOnScreen(
+            diameterPixels, glm::distance(lender->centre, job.centre) + lender->neighbourMotion);
+        if (error < least) {
+            least = error;
+            best = lender;
+        }
+    }
+    return best;
+}
+
 ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const SeenVehicle> seen,
                                        std::span<const float> centreHeights, const PlanOptions& options) {
     ++frame_;
@@ -73,7 +98,10 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
     };
 
     std::vector<MapJob> wanted;
+    std::vector<float> diameters(scene.vehicles.size(), 0.0f);
+    std::vector<const Held*> lenders;  // with maps that are good this frame
     for (const SeenVehicle& vehicle : seen) {
+        diameters[vehicle.index] = vehicle.diameterPixels;
         const vehicles::VehiclePose& pose = scene.vehicles[vehicle.index];
         Held& map = held_[pose.id];
         map.lastSeen = frame_;
@@ -86,7 +114,7 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         double pixels = std::numeric_limits<double>::infinity();
         if (map.built) {
             const double moved = glm::distance(centre, map.centre) + map.neighbourMotion;
-            pixels = vehicle.diameterPixels * moved / (3.14159265 * streetHalfWidth);
+            pixels = errorOnScreen(vehicle.diameterPixels, moved);
             // A map of the wrong detail is replaced when its turn comes; until then the old one is shown.
             if (sizeClass != map.slot.sizeClass)
                 pixels += vehicle.diameterPixels /
@@ -95,6 +123,7 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         }
         if (map.built && !options.everyFrame && pixels < options.errorThreshold) {
             ++plan.fresh;
+            lenders.push_back(&map);
             continue;
         }
         MapJob job;
@@ -114,6 +143,17 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
     });
     for (MapJob& job : wanted) {
         Held& map = held_[scene.vehicles[job.vehicle].id];
+        if (options.share && !options.everyFrame) {
+            const Held* lender = lenderFor(job, diameters[job.vehicle], options.errorThreshold, lenders);
+            if (lender != nullptr) {
+                release(map.slot);
+                map.slot = {};
+                map.built = false;
+                plan.slots[job.vehicle] = lender->slot;
+                ++plan.shared;
+                continue;
+            }
+        }
         const std::uint64_t cost = texelsOf(job.slot);
         const bool affordable =
             plan.jobs.empty() || plan.texels + cost <= options.texelBudget || options.everyFrame;
@@ -134,12 +174,14 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         map.centre = job.centre;
         map.neighbourMotion = 0;
         map.built = true;
+        lenders.push_back(&map);
         plan.texels += texelsOf(job.slot);
         plan.jobs.push_back(job);
     }
 
     for (const SeenVehicle& vehicle : seen)
-        plan.slots[vehicle.index] = held_[scene.vehicles[vehicle.index].id].slot;
+        if (const Held& map = held_[scene.vehicles[vehicle.index].id]; map.built)
+            plan.slots[vehicle.index] = map.slot;
 
     // How far the neighbours moved since the last frame, for maps out of sight as well: they may be shown
     // again. A vehicle passing at distance r changes about (size / r)^2 of the map.

@@ -34,6 +34,7 @@ struct ReflectionPlan {
     std::uint32_t visible = 0;    ///< vehicles seen
     std::uint32_t fresh = 0;      ///< maps kept because their error on screen is below the threshold
     std::uint32_t postponed = 0;  ///< maps that the budget left for a later frame
+    std::uint32_t shared = 0;     ///< vehicles that show a neighbour's map
     std::uint64_t texels = 0;     ///< to be built
 };
 
@@ -43,6 +44,7 @@ struct PlanOptions {
     float texelsPerPixel = 0.5f;  ///< face size wanted for each pixel of the vehicle's projected diameter
     float errorThreshold = 0.5f;  ///< pixels of shift of a reflected feature that are let stand
     bool everyFrame = false;      ///< rebuild all visible maps every frame (measuring; the paper's way)
+    bool share = true;            ///< a vehicle may show a neighbour's map where that is within the threshold
 };
 
 /// Decides which local maps are built when. Keeps what it planned before: a map's age is the distance that
@@ -50,7 +52,9 @@ struct PlanOptions {
 ///
 /// The error on screen of a map grows with that distance: a feature at distance r seen from a centre that is
 /// off by s turns by about s / r, and a mirror that shows the half space over D pixels shifts it by about D s
-/// / (pi r). r is not known for each feature; a street's half width stands for it.
+/// / (pi r). r is not known for each feature; a street's half width stands for it. By the same measure the
+/// map of a neighbour at distance s may do for a vehicle: in practice for those of a few pixels, of which a
+/// long street has many.
 class ReflectionPlanner {
   public:
     /// Forgets all maps: after a change of city, light or method.
@@ -72,6 +76,9 @@ class ReflectionPlanner {
         std::uint64_t lastSeen = 0;
         bool built = false;
     };
+    /// The map of least error on this vehicle among the lenders' that is below the threshold, or null.
+    static const Held* lenderFor(const MapJob& job, float diameterPixels, float threshold,
+                                 std::span<const Held* const> lenders);
     reflection::LocalMapSlot allocate(int sizeClass);
     void release(reflection::LocalMapSlot slot);
 

@@ -169,6 +169,7 @@ void Panel::Impl::drawCounters(const PanelNews& news) {
     row("  in view", "%.0f", news.reflections.visible);
     row("local maps rebuilt", "%.0f", news.reflections.rebuilt);
     row("  still good", "%.0f", news.reflections.fresh);
+    row("  a neighbour's", "%.0f", news.reflections.shared);
     row("  left for later", "%.0f", news.reflections.postponed);
     row("  rays", "%.0f", static_cast<double>(news.reflections.rays));
     row("  texels", "%.0f", static_cast<double>(news.reflections.texels));

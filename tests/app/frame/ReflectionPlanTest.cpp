@@ -55,7 +55,7 @@ void expectSound(const ReflectionPlan& plan, const FrameScene& scene, std::span<
                  const ReflectionPlanner& planner) {
     ASSERT_EQ(plan.slots.size(), scene.vehicles.size());
     EXPECT_EQ(plan.visible, seen.size());
-    EXPECT_EQ(plan.visible, plan.fresh + plan.postponed + plan.jobs.size());
+    EXPECT_EQ(plan.visible, plan.fresh + plan.shared + plan.postponed + plan.jobs.size());
     std::set<std::pair<int, int>> used;
     for (const SeenVehicle& v : seen) {
         const auto slot = plan.slots[v.index];
@@ -92,12 +92,13 @@ TEST(ReflectionPlanTest, nothingSeenNothingPlanned) {
     for (const int layers : planner.layersNeeded()) EXPECT_EQ(layers, 0);
 }
 
-TEST(ReflectionPlanTest, everyVehicleHasItsOwnMapWhateverHappens) {
+TEST(ReflectionPlanTest, everyVehicleHasItsOwnMapWhateverHappensIfNoneIsShared) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Street street(seed);
         ReflectionPlanner planner;
         PlanOptions options;
         options.texelBudget = 20'000 * seed;
+        options.share = false;
         for (int frame = 0; frame < 300; ++frame) {
             if (frame % 20 == 0) {
                 auto& all = street.scene.vehicles;
@@ -214,6 +215,65 @@ TEST(ReflectionPlanTest, mapsThatChangedOutOfSightAreRebuilt) {
     scene.vehicles[1].speed = 0;
     scene.time += 1.0 / 60;
     EXPECT_EQ(planner.plan(scene, seen, heights, options).jobs.size(), 1u);
+}
+
+TEST(ReflectionPlanTest, aVehicleOfFewPixelsShowsItsNeighboursMap) {
+    FrameScene scene;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        vehicles::VehiclePose pose;
+        pose.id = i;
+        pose.position.x = 6.0 * i;
+        scene.vehicles.push_back(pose);
+    }
+    PlanOptions options;
+    // Off by 6 m at 8 m from the facades: 6 / (8 pi) of the diameter, half a pixel for 2.09 pixels.
+    ReflectionPlanner planner;
+    const std::vector<SeenVehicle> small{{0, 2.0f}, {1, 2.0f}, {2, 2.0f}};
+    const ReflectionPlan plan = planner.plan(scene, small, heights, options);
+    EXPECT_EQ(plan.jobs.size(), 2u) << "the two at the ends are 12 m apart";
+    EXPECT_EQ(plan.shared, 1u);
+    EXPECT_EQ(plan.visible, 3u);
+    for (const auto& slot : plan.slots) EXPECT_TRUE(slot.valid());
+    const ReflectionPlan next = planner.plan(scene, small, heights, options);
+    EXPECT_EQ(next.jobs.size(), 0u);
+    EXPECT_EQ(next.shared, 1u);
+
+    // Larger on screen it gets its own; a coarser map than it wants is not borrowed.
+    planner.reset();
+    EXPECT_EQ(planner.plan(scene, std::vector<SeenVehicle>{{0, 2.2f}, {1, 2.2f}}, heights, options).shared,
+              0u);
+    planner.reset();
+    EXPECT_EQ(planner.plan(scene, std::vector<SeenVehicle>{{0, 300}, {1, 2}}, heights, options).shared, 1u);
+    options.share = false;
+    planner.reset();
+    EXPECT_EQ(planner.plan(scene, small, heights, options).jobs.size(), 3u);
+}
+
+TEST(ReflectionPlanTest, sharingKeepsEveryVehicleMirroringWithinTheThreshold) {
+    // A jam far away, seen by a camera that comes nearer.
+    FrameScene scene;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        vehicles::VehiclePose pose;
+        pose.id = i;
+        pose.position = {5.0 * (i / 3), 3.2 * (i % 3), 0};
+        scene.vehicles.push_back(pose);
+    }
+    ReflectionPlanner planner;
+    PlanOptions options;
+    options.texelBudget = 100'000'000;
+    std::uint32_t most = 0;
+    for (int frame = 0; frame < 50; ++frame) {
+        scene.time += 0.1;
+        std::vector<SeenVehicle> seen;
+        for (std::uint32_t i = 0; i < 300; ++i)
+            seen.push_back(
+                {i, static_cast<float>(3000 / (1500.0 - 25 * frame - scene.vehicles[i].position.x))});
+        const ReflectionPlan plan = planner.plan(scene, seen, heights, options);
+        EXPECT_EQ(plan.visible, plan.fresh + plan.shared + plan.postponed + plan.jobs.size());
+        for (const SeenVehicle& v : seen) ASSERT_TRUE(plan.slots[v.index].valid());
+        most = std::max(most, plan.shared);
+    }
+    EXPECT_GT(most, 100u);
 }
 
 TEST(ReflectionPlanTest, slotsAreReusedAfterVehiclesLeave) {
