@@ -25,7 +25,8 @@ double mean(const PatternImage& image, int channel) {
     double sum = 0;
     for (std::size_t i = static_cast<std::size_t>(channel); i < image.rgba.size(); i += 4)
         sum += image.rgba[i];
-    return sum / (255.0 * static_cast<double>(image.rgba.size() / 4));
+    const std::size_t texels = image.rgba.size() / 4;
+    return sum / (255.0 * static_cast<double>(texels));
 }
 
 /// Mean step between neighbours across one column or row boundary, `at` texels from the start.

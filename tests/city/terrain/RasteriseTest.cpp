@@ -131,9 +131,11 @@ TEST(RasteriseTest, anyCoversEveryCellThatATriangleTouches) {
                 if (field.at(i, j) == nothing) continue;
                 bool near = false;
                 double z = 0;
-                for (int n = 0; n < 40 * 40 && !near; ++n)
+                for (int n = 0; n < 40 * 40 && !near; ++n) {
+                    const int column = n % 40, row = n / 40;
                     for (std::size_t k = 0; k < mesh.triangleCount() && !near; ++k)
-                        near = heightAt(mesh, k, {i + (n % 40 + 0.5) / 40, j + (n / 40 + 0.5) / 40}, 0.05, z);
+                        near = heightAt(mesh, k, {i + (column + 0.5) / 40, j + (row + 0.5) / 40}, 0.05, z);
+                }
                 EXPECT_TRUE(near) << i << ' ' << j;
             }
     }

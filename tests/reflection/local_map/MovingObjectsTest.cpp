@@ -176,7 +176,7 @@ TEST(MovingObjectsTest, aBoxShowsItsOutsideOnEveryFaceAndNothingFromWithin) {
         LocalMap map = sceneAt(33, 50);
         EXPECT_GT(drawMovingObjects(objects, face, map), 20u) << face;
         // The near side, 5 m off, not the far one.
-        EXPECT_NEAR(map.depth[map.faceOffset(face) + 16 * 33 + 16], 5, 1e-4f) << face;
+        EXPECT_NEAR(map.depth[map.faceOffset(face) + std::size_t{16} * 33 + 16], 5, 1e-4f) << face;
         EXPECT_EQ(drawMovingObjects(objects, face ^ 1, map), 0u) << face;
     }
     const std::vector<MovingObject> around{box(glm::vec3(-2), glm::vec3(2))};
