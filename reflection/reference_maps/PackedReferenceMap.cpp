@@ -85,7 +85,7 @@ PackedReferenceMap::Level::Level(int faceSize, float radianceScale, std::vector<
       chroma_(std::move(chroma)) {}
 
 std::size_t PackedReferenceMap::Level::wordBytes(int faceSize) {
-    const auto m = static_cast<std::size_t>(faceSize) + 2;
+    const std::size_t m = static_cast<std::size_t>(faceSize) + 2;
     return (6 * m * m * 5 + 1) / 2 + 4;
 }
 
@@ -186,13 +186,13 @@ PackedReferenceMap::Level::Level(const ReferenceMap& map, float radianceScale)
 }
 
 std::size_t PackedReferenceMap::Level::borderedIndex(int face, int x, int y) const {
-    const auto m = static_cast<std::size_t>(faceSize_) + 2;
+    const std::size_t m = static_cast<std::size_t>(faceSize_) + 2;
     return (static_cast<std::size_t>(face) * m + static_cast<std::size_t>(y + 1)) * m +
            static_cast<std::size_t>(x + 1);
 }
 
 std::size_t PackedReferenceMap::Level::chromaIndex(int face, int x, int y) const {
-    const auto rows = static_cast<std::size_t>(faceSize_) + 2 / 2;
+    const auto rows = static_cast<std::size_t>(faceSize_ + 2) / 2;
     return (static_cast<std::size_t>(face) * rows + static_cast<std::size_t>((y + 1) / 2)) *
                static_cast<std::size_t>(chromaColumns()) +
            static_cast<std::size_t>((x + 1) / 4);
