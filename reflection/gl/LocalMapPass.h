@@ -30,11 +30,11 @@ struct LocalMapJob {
 /// For a frame: one dispatch for each face size in use, and for those of 16 texels and more one of a group a
 /// face for the coarse levels. Nothing is read back and nothing waited for. What travels each frame is 4
 /// bytes a texel (the reciprocals), 16 bytes a texel of the objects' boxes, and 64 bytes a face. The
-/// reciprocals rather than the mesh's quads: quads of 28 bytes stand for 16 to 20 texels (measured), so that
-/// they would save 2.5 of the 4 bytes and the 1.3 ns a texel of filling in; but a frame's 80,000 texels are
-/// 0.3 MB and 0.1 ms of one core, a fifth of what tracing their rays takes, and looking for each texel's
-/// quad, or drawing quads into a target of their own with a barrier behind it, would tie the shader to the
-/// form of the mesh.
+/// reciprocals rather than the mesh's quads: quads of 28 bytes stand for some 50 texels, so that they would
+/// save most of the 4 bytes and the 0.7 ns a texel of filling in (measured); but a frame's 80,000 texels are
+/// 0.3 MB and 0.06 ms of one core, half of what tracing their rays takes, and looking for each texel's quad,
+/// or drawing quads into a target of their own with a barrier behind it, would tie the shader to the form of
+/// the mesh.
 ///
 /// Colours are those of lookUpRefined but for the rounding of its arithmetic.
 ///
