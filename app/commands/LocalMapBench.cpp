@@ -95,14 +95,15 @@ class MethodRun {
             return;
         }
         map_.resize(faceSize);
+        mips_.resize(faceSize);
         std::array<std::uint32_t, 6> rays{};
         tbb::parallel_for(0, 6, [&](int face) {
             rays[static_cast<std::size_t>(face)] =
                 builders_[static_cast<std::size_t>(face)].buildFace(*prepared.tracer, request, face, map_);
+            reflection::packFaceMips(map_, face, mips_);
         });
         rays_ = 0;
         for (std::uint32_t r : rays) rays_ += r;
-        reflection::packMips(map_, mips_);
         atlas.upload(slot, mips_);
     }
     /// Of the map built last, which must still be in the slot.

@@ -235,15 +235,17 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
             return;
         }
     }
-    for (std::size_t i = 0; i < jobs.size(); ++i) built[i].resize(requests[i].faceSize);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        built[i].resize(requests[i].faceSize);
+        packed[i].resize(requests[i].faceSize);
+    }
     std::atomic<std::uint64_t> rays{0};
     tbb::parallel_for(std::size_t{0}, 6 * jobs.size(), [&](std::size_t k) {
         const int face = static_cast<int>(k % 6);
         rays += scratch.local().builder.buildFace(tracer, requests[k / 6], face, built[k / 6]);
         reflection::drawMovingObjects(neighbours[k / 6], face, built[k / 6]);
+        reflection::packFaceMips(built[k / 6], face, packed[k / 6]);
     });
-    tbb::parallel_for(std::size_t{0}, jobs.size(),
-                      [&](std::size_t i) { reflection::packMips(built[i], packed[i]); });
     counters.rays = rays;
     for (std::size_t i = 0; i < jobs.size(); ++i) atlas.upload(jobs[i].slot, packed[i]);
 }

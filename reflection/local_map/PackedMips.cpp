@@ -93,29 +93,35 @@ std::size_t PackedMips::levelOffset(int level) const {
     return offset;
 }
 
-void packMips(const LocalMap& map, PackedMips& out) {
-    out.faceSize = map.faceSize;
-    const int levels = out.levelCount();
-    out.texels.resize(out.levelOffset(levels));
-    const float* planes[3] = {map.red.data(), map.green.data(), map.blue.data()};
+void PackedMips::resize(int size) {
+    faceSize = size;
+    texels.resize(levelOffset(levelCount()));
+}
+
+void packFaceMips(const LocalMap& map, int face, PackedMips& out) {
+    const std::size_t first = map.faceOffset(face);
+    const float* planes[3] = {map.red.data() + first, map.green.data() + first, map.blue.data() + first};
     std::vector<float> previous[3], current[3];
-    for (int level = 0; level < levels; ++level) {
+    for (int level = 0; level < out.levelCount(); ++level) {
         const auto side = static_cast<std::size_t>(map.faceSize >> level);
-        const std::size_t count = 6 * side * side;
         if (level > 0) {
             for (int c = 0; c < 3; ++c) {
-                current[c].resize(count);
-                for (std::size_t face = 0; face < 6; ++face) HWY_DYNAMIC_DISPATCH(Halve)
-                (planes[c] + face * 4 * side * side, current[c].data() + face * side * side, side);
-            }
-            for (int c = 0; c < 3; ++c) {
+                current[c].resize(side * side);
+                HWY_DYNAMIC_DISPATCH(Halve)(planes[c], current[c].data(), side);
                 previous[c].swap(current[c]);
                 planes[c] = previous[c].data();
             }
         }
         HWY_DYNAMIC_DISPATCH(PackTexels)
-        (planes[0], planes[1], planes[2], out.texels.data() + out.levelOffset(level), count);
+        (planes[0], planes[1], planes[2],
+         out.texels.data() + out.levelOffset(level) + static_cast<std::size_t>(face) * side * side,
+         side * side);
     }
+}
+
+void packMips(const LocalMap& map, PackedMips& out) {
+    out.resize(map.faceSize);
+    for (int face = 0; face < 6; ++face) packFaceMips(map, face, out);
 }
 
 void unpackTexel(std::uint32_t texel, float& red, float& green, float& blue) {

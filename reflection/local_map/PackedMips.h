@@ -16,7 +16,11 @@ struct PackedMips {
 
     int levelCount() const;                    ///< log2(faceSize) + 1
     std::size_t levelOffset(int level) const;  ///< index of the level's first texel
+    void resize(int size);                     ///< room for all levels; contents are undefined
 };
+
+/// Packs all levels of one face; `out` must have the map's face size. Faces may be packed at the same time.
+void packFaceMips(const LocalMap& map, int face, PackedMips& out);
 
 /// Packs a map; a face size that is not a power of two gets level 0 alone. Values are clamped to what 10 and
 /// 11 bit floats hold; negative and NaN become 0. Reuses `out`'s memory.
