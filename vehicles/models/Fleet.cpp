@@ -13,6 +13,7 @@ std::vector<VehicleModel> builtInFleet() {
     std::vector<std::future<VehicleModel>> builds;
     for (const auto build : {hatchback, saloon, van, bus, tram})
         builds.push_back(std::async(std::launch::async, build));
+    fleet.reserve(builds.size());
     for (auto& build : builds) fleet.push_back(build.get());
     return fleet;
 }

@@ -263,8 +263,8 @@ city::Mesh withoutThinPieces(const city::Mesh& mesh, float thickness) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, float>
         shared;  // piece and the neighbour's surface: border in metres
     for (std::uint32_t f = 0; f < faces; ++f) {
-        const glm::vec3 a = positions[mesh.indices[3 * f]], b = positions[mesh.indices[3 * f + 1]],
-                        c = positions[mesh.indices[3 * f + 2]];
+        const std::uint32_t* corner = mesh.indices.data() + std::size_t{3} * f;
+        const glm::vec3 a = positions[corner[0]], b = positions[corner[1]], c = positions[corner[2]];
         area[find(f)] += 0.5f * glm::length(glm::cross(b - a, c - a));
     }
     for (std::size_t i = 1; i < edges.size(); ++i) {

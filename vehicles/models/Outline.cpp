@@ -15,6 +15,7 @@ Outline::Outline(const std::vector<Corner>& corners) {
 
 Outline::Outline(const std::vector<glm::vec2>& corners, float radius) {
     std::vector<Corner> rounded;
+    rounded.reserve(corners.size());
     for (const glm::vec2& c : corners) rounded.push_back({c, radius});
     build(rounded);
 }

@@ -50,9 +50,11 @@ class Reach {
             }
         }
     }
-    float at(std::uint32_t sample) const { return std::max(reach_[2 * sample], reach_[2 * sample + 1]); }
+    float at(std::uint32_t sample) const { return std::max(towards(sample, true), towards(sample, false)); }
     /// To the left or to the right alone: a bus swings out on one side of a bend and cuts in on the other.
-    float towards(std::uint32_t sample, bool left) const { return reach_[2 * sample + (left ? 1 : 0)]; }
+    float towards(std::uint32_t sample, bool left) const {
+        return reach_[std::size_t{2} * sample + (left ? 1 : 0)];
+    }
 
   private:
     void drive(std::uint32_t before, std::uint32_t way, std::uint32_t after,
