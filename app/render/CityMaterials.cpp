@@ -1,5 +1,7 @@
 #include "app/render/CityMaterials.h"
 
+#include <epoxy/gl.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <string>
 
 #include "city/model/PatternImages.h"
+#include "reflection/gl/SoftwareRenderer.h"
 
 namespace app {
 
@@ -125,6 +128,10 @@ CityMaterials::CityMaterials(const std::vector<city::Material>& materials) {
     const int levels = mipLevels(size);
     patterns_ = Texture::array2D(GL_RGBA8, size, size, static_cast<int>(images.size()), levels);
     patterns_.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR).wrap(GL_REPEAT);
+    // Facades seen aslant stay sharp: 0.5 dB in local maps. Graphics cards have it for nearly nothing;
+    // llvmpipe takes twice as long for a frame.
+    if (!reflection::softwareRenderer() && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTextureParameterf(patterns_.name(), GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
     for (std::size_t layer = 0; layer < images.size(); ++layer) {
         MipChain chain(images[layer], size);
         for (int level = 0; level < levels; ++level) {
