@@ -161,14 +161,14 @@ TraceResult exactWalk(const TracedGrid& grid, const city::Ray& ray, float tMax) 
         const Axis& axis = leavesByX ? x : y;
         const int border = axis.exitPlane(leavesByX ? i : j);
         // Nothing more to find above the highest column or beyond tMax. Three roundings: a slack of 2^-48 is
-        // plenty.
+        // plenty. To float a parameter is rounded by 2^-24 of itself, or by 2^-150 where it is subnormal.
         const double t = (axis.plane(border) - axis.start) / axis.direction;
         const double climb = static_cast<double>(ray.direction.z) * t;
         const double z = static_cast<double>(ray.origin.z) + climb;
         if (ray.direction.z >= 0 && z - 0x1p-48 * (std::abs(static_cast<double>(ray.origin.z)) + climb) >
                                         static_cast<double>(grid.top))
             return miss;
-        if (t * (1 - 1e-6) > static_cast<double>(tMax)) return miss;
+        if (t * (1 - 1e-6) - 0x1p-149 > static_cast<double>(tMax)) return miss;
         if (leavesByX) {
             i += x.step();
             face = EntryFace::x;

@@ -112,8 +112,8 @@ HWY_INLINE Outcome step(const FanStart& fan, Walkers& w, VI entry, MF active) {
     const VF lateral1 = hn::Mul(error, fastest);
     const VF lateral0 = hn::MulAdd(lateral1, inverseMax, hn::Set(f, 2 * leapError));
     const VF vertical1 = hn::Mul(error, hn::Abs(dz));
-    const VF vertical0 =
-        hn::MulAdd(vertical1, inverseMax, hn::Set(f, leapError * (std::abs(fan.origin.z) + grid.largest)));
+    const VF vertical0 = hn::MulAdd(
+        vertical1, inverseMax, hn::Set(f, leapError * (std::abs(fan.origin.z) + grid.largest) + leapTiny));
 
     MF undecided = hn::Lt(one, zero);
     if constexpr (first) {

@@ -87,6 +87,10 @@ TraceResult walk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         // So near to a border that only the rule itself can tell the cell.
         alignas(16) const double known[2] = {static_cast<double>(i), static_cast<double>(j)};
         cell = hn::Load(p, known);
+        // A start that rounding has put on its cell's far border, along which the ray runs: 0 / 0.
+        const MP crossesOrBefore =
+            hn::Or(hn::Gt(speeds, zero), hn::Lt(start, hn::Add(cell, hn::Set(p, 1.0))));
+        if (!hn::AllTrue(p, crossesOrBefore)) return carefulWalk(grid, ray, tMax);
     }
     const double inverseRise = 1 / rise;
     // Nothing is hit after tLast. The slack is for the rounding of a hit's t to float.

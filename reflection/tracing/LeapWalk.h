@@ -40,7 +40,9 @@ namespace reflection {
 /// The walk allows, with e = 2^-20 = 16 u (three times what is needed) and invMax the larger of 1 / |dx|, 1 /
 /// |dy|:
 ///     lateral(t) = e (t + invMax) max(|dx|, |dy|) + 2 e                 cells
-///     vertical(t) = e (t + invMax) |dz| + e (|oz| + largest |column|)   metres
+///     vertical(t) = e (t + invMax) |dz| + e (|oz| + largest |column|) + 2^-80   metres
+/// The last term is for numbers so small that products lose their bits (2^-150 each, times t < 2^60): without
+/// it a ray that sinks from 2^-149 m to a top at 0 would be told apart by nothing.
 /// About one ray in a thousand is left to leapWalk. A direction component below 2^-30 of the other horizontal
 /// one counts as never crossing a border: over a leap of 64 cells it drifts by 6e-8 cells, less than
 /// `lateral`, so that no crossing goes unnoticed.
@@ -50,6 +52,7 @@ constexpr float negligibleSlope = 0x1p-30f;
 constexpr float leapSlowest = 0x1p-40f;
 constexpr float leapFastest = 0x1p40f;
 constexpr float leapHighest = 0x1p60f;   ///< of |oz| and |dz|
+constexpr float leapTiny = 0x1p-80f;     ///< metres, of leapFan
 constexpr double leapLateral = 0x1p-18;  ///< cells, of leapWalk
 constexpr double leapFarthest =
     0x1p36;  ///< levels: starts farther from the grid's lowest column walk exactly

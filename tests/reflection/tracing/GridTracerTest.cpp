@@ -360,6 +360,49 @@ TEST(GridTracerTest, hitsBeyondTMaxAreMisses) {
     EXPECT_GT(cut, 1000);
 }
 
+/// Found by `mirrorstreet stability`.
+TEST(GridTracerTest, subnormalHeightsAreToldApartInFans) {
+    // Products of numbers this small are 0 in float: nothing may be concluded from them.
+    city::Heightfield field(1, 1, 1, {0, 0});
+    field.set(0, 0, 0);
+    const GridTracer tracer(field);
+    const glm::vec3 origin(0x1.aaa33cp-2f, 0x1.ab9de8p-1f, 0x1p-149f),
+        d(-0x1.f0d86p-1f, -0.0f, -0x1.d8p-143f);
+    for (const std::size_t count : {1u, 4u}) {
+        const std::vector<float> dx(count, d.x), dy(count, d.y), dz(count, d.z);
+        std::vector<float> t(count, -1);
+        tracer.traceFan(origin, dx, dy, dz, t);
+        for (const float each : t) EXPECT_EQ(each, tracer.trace({origin, d}).t);
+    }
+}
+
+TEST(GridTracerTest, limitsAreKeptAtSubnormalParameters) {
+    // From just before a wall, so fast that it is reached within the least of floats; the other direction
+    // runs along a border, so that the exact walk decides.
+    city::Heightfield field(8, 8, 1, {0, 0});
+    for (float& h : field.cells()) h = 0;
+    field.set(4, 4, infinity);
+    const GridTracer tracer(field);
+    for (const float speed : {0x1.7p126f, 0x1.8p126f, 0x1p127f, 0x1.8p127f}) {
+        const city::Ray ray{{std::nextafter(4.0f, 0.0f), 4, 1}, {speed, 0, 0}};
+        const TraceResult hit = tracer.trace(ray);
+        ASSERT_EQ(hit.t, std::numeric_limits<float>::denorm_min());
+        EXPECT_EQ(tracer.trace(ray, hit.t).status, TraceStatus::hit) << speed;
+        EXPECT_EQ(tracer.trace(ray, 0).status, TraceStatus::miss) << speed;
+    }
+}
+
+TEST(GridTracerTest, aStartThatRoundsOntoTheBorderAlongWhichItRunsKeepsItsRow) {
+    city::Heightfield field(21, 9, 100, {-1000, -900});
+    for (float& h : field.cells()) h = 0;
+    field.set(1, 8, infinity);
+    const GridTracer tracer(field);
+    // A hair south of y = 0, the far border of row 8; in double, 900 m from the corner, it is y = 0.
+    const TraceResult hit = tracer.trace({{-343, -0x1p-149f, 1}, {-1, 0, 0}});
+    EXPECT_EQ(hit.status, TraceStatus::hit);
+    EXPECT_EQ(hit.cell, glm::ivec2(1, 8));
+}
+
 TEST(GridTracerTest, occlusionIsSeenBetweenPointsOnly) {
     city::Heightfield field(10, 1, 1, {0, 0});
     for (float& h : field.cells()) h = 0;
