@@ -3,7 +3,7 @@
 namespace app {
 
 std::vector<Command> allCommands() {
-    return {tourCommand(), bakeCommand(), benchCommand(), exportCommand(), infoCommand()};
+    return {tourCommand(), bakeCommand(), benchCommand(), exportCommand(), infoCommand(), stabilityCommand()};
 }
 
 }  // namespace app

@@ -225,6 +225,19 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
         parser.add_option("--json", o.json, "write the results to this file")
             ->type_name("FILE")
             ->check(isPath());
+    if (groups & stabilityOptions) {
+        parser
+            .add_option("--rays", o.rays,
+                        "rays of the tracer's campaign, 1 to 10^12; the other campaigns grow with them, up "
+                        "to a hundredfold")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(1, 1'000'000'000'000));
+        parser.add_option("--seed", o.seed, "of everything that is drawn at random")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(0, 0xffffffffffffffffull));
+    }
     if (groups & displayOptions) {
         parser.add_flag("--offscreen", o.offscreen, "no window, even where there is a display");
         addNamed(parser, "--camera", o.camera, cameraModeNames,

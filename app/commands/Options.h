@@ -45,6 +45,7 @@ struct Options {
     std::uint32_t stills = 6;
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
+    std::uint64_t rays = 4'000'000;  ///< of `stability`
 
     /// --gpu-map-memory in bytes.
     std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
@@ -70,7 +71,8 @@ enum OptionGroup : unsigned {
     displayOptions = 1u << 13,   ///< --offscreen --camera --stills
     /// --city --car --drive as files to write; the city to export is then CITY alone, the body --body.
     exportOptions = 1u << 14,
-    mapsOnOptions = 1u << 15,  ///< --maps-on --gpu-map-memory
+    mapsOnOptions = 1u << 15,     ///< --maps-on --gpu-map-memory
+    stabilityOptions = 1u << 16,  ///< --rays, and --seed without a city
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,
