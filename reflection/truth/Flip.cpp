@@ -1,7 +1,9 @@
 // LDR-FLIP. Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild: FLIP: A Difference
 // Evaluator for Alternating Images, High Performance Graphics 2020. Numbers in comments are the paper's
-// sections. Departure: every two-dimensional filter is done as two one-dimensional ones (or a sum of two such
-// pairs), which is the same sum in another order.
+// sections. HDR-FLIP: Andersson, Nilsson, Shirley, Akenine-Moller: Visualizing Errors in Rendered High
+// Dynamic Range Images, Eurographics 2021 short papers: the greatest LDR-FLIP error over a range of
+// exposures. Departure: every two-dimensional filter is done as two one-dimensional ones (or a sum of two
+// such pairs), which is the same sum in another order.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <numbers>
 
 #include "reflection/truth/ImageError.h"
@@ -124,6 +127,16 @@ struct Features {
     Channel point;
 };
 
+}  // namespace
+
+/// All that the comparison needs of one image.
+struct FlipImage::Seen {
+    std::vector<glm::vec3> lab;  ///< after the eye's blur, Hunt-adjusted
+    Features features;
+};
+
+namespace {
+
 Features detectFeatures(const Channel& lightness, double pixelsPerDegree) {
     const double sigma = 0.5 * edgeWidth * pixelsPerDegree;
     const int radius = static_cast<int>(std::ceil(3 * sigma));
@@ -151,13 +164,10 @@ Features detectFeatures(const Channel& lightness, double pixelsPerDegree) {
     return {length(edge), length(point)};
 }
 
-/// All that the comparison needs of one image.
-struct Seen {
-    std::vector<glm::vec3> lab;  ///< after the eye's blur, Hunt-adjusted
-    Features features;
-};
-
-Seen see(const ImageView& image, const Colours& colours, double pixelsPerDegree) {
+/// From linear colours in 0..1, `linear(i)` for pixel i.
+template <typename Linear>
+FlipImage::Seen see(const ImageView& image, const Colours& colours, double pixelsPerDegree,
+                    const Linear& linear) {
     Channel y(image.width, image.height), cx(image.width, image.height), cz(image.width, image.height),
         lightness(image.width, image.height);
     const auto width = static_cast<std::size_t>(image.width);
@@ -169,9 +179,7 @@ Seen see(const ImageView& image, const Colours& colours, double pixelsPerDegree)
         });
     };
     forRows([&](std::size_t i) {
-        const glm::vec3& p = image.pixels[i];
-        const glm::vec3 v = colours.whiteRelativeFromRgb *
-                            glm::vec3(linearFromSrgb(p.x), linearFromSrgb(p.y), linearFromSrgb(p.z));
+        const glm::vec3 v = colours.whiteRelativeFromRgb * linear(i);
         lightness.values[i] = v.y;  // (Y + 16) / 116, since Y = 116 v.y - 16
         y.values[i] = 116 * v.y - 16;
         cx.values[i] = 500 * (v.x - v.y);
@@ -185,7 +193,8 @@ Seen see(const ImageView& image, const Colours& colours, double pixelsPerDegree)
     cx = applyCsf(cx, redGreenCsf, radius, pixelsPerDegree);
     cz = applyCsf(cz, blueYellowCsf, radius, pixelsPerDegree);
 
-    Seen seen{std::vector<glm::vec3>(lightness.values.size()), detectFeatures(lightness, pixelsPerDegree)};
+    FlipImage::Seen seen{std::vector<glm::vec3>(lightness.values.size()),
+                         detectFeatures(lightness, pixelsPerDegree)};
     forRows([&](std::size_t i) {
         const float middle = (y.values[i] + 16) / 116;
         const glm::vec3 v(middle + cx.values[i] / 500, middle, middle - cz.values[i] / 200);
@@ -194,39 +203,137 @@ Seen see(const ImageView& image, const Colours& colours, double pixelsPerDegree)
     return seen;
 }
 
-}  // namespace
-
-std::vector<float> flip(const ImageView& test, const ImageView& reference, float pixelsPerDegree) {
-    const std::size_t count = static_cast<std::size_t>(std::max(test.width, 0)) *
-                              static_cast<std::size_t>(std::max(test.height, 0));
-    if (count == 0 || test.width != reference.width || test.height != reference.height ||
-        test.pixels.size() < count || reference.pixels.size() < count || !(pixelsPerDegree > 0) ||
-        !std::isfinite(pixelsPerDegree))
-        return {};
+/// FLIP's error of every pixel from what is seen of two images of one size.
+std::vector<float> compare(const FlipImage::Seen& test, const FlipImage::Seen& reference, int width,
+                           int height) {
     const Colours colours = colourMatrices();
-    const Seen seenTest = see(test, colours, pixelsPerDegree);
-    const Seen seenReference = see(reference, colours, pixelsPerDegree);
     // 4.1.3: the largest error that two sRGB colours can have lies between green and blue.
     const float largest = std::pow(hyab(huntLab({0, 1, 0}, colours), huntLab({0, 0, 1}, colours)), qc);
     const float knee = pc * largest;
 
-    std::vector<float> error(count);
-    tbb::parallel_for(0, test.height, [&](int row) {
-        const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(test.width);
-        for (std::size_t i = begin; i < begin + static_cast<std::size_t>(test.width); ++i) {
-            const float distance = std::pow(hyab(seenTest.lab[i], seenReference.lab[i]), qc);
+    std::vector<float> error(test.lab.size());
+    tbb::parallel_for(0, height, [&](int row) {
+        const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+        for (std::size_t i = begin; i < begin + static_cast<std::size_t>(width); ++i) {
+            const float distance = std::pow(hyab(test.lab[i], reference.lab[i]), qc);
             const float colour = distance < knee
                                      ? pt / knee * distance
                                      : std::min(1.0f, pt + (distance - knee) / (largest - knee) * (1 - pt));
-            const float feature = std::max(
-                std::abs(seenTest.features.edge.values[i] - seenReference.features.edge.values[i]),
-                std::abs(seenTest.features.point.values[i] - seenReference.features.point.values[i]));
+            const float feature =
+                std::max(std::abs(test.features.edge.values[i] - reference.features.edge.values[i]),
+                         std::abs(test.features.point.values[i] - reference.features.point.values[i]));
             // A response's length is at most sqrt(2); rounding must not take the exponent below zero.
             const float featureError = std::min(1.0f, std::pow(feature / std::numbers::sqrt2_v<float>, qf));
             error[i] = std::pow(colour, 1 - featureError);
         }
     });
     return error;
+}
+
+std::size_t pixelCount(const ImageView& image) {
+    return static_cast<std::size_t>(std::max(image.width, 0)) *
+           static_cast<std::size_t>(std::max(image.height, 0));
+}
+
+bool visible(const ImageView& image, float pixelsPerDegree) {
+    return pixelCount(image) > 0 && image.pixels.size() >= pixelCount(image) && pixelsPerDegree > 0 &&
+           std::isfinite(pixelsPerDegree);
+}
+
+// The tone mapping that HDR-FLIP takes by default: the ACES curve as Narkowicz fitted it, exposure 0.6
+// included, (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5).
+constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
+/// Where the curve starts to saturate, by which the exposures are chosen.
+constexpr double kneeOfTheCurve = 0.85;
+
+glm::vec3 shownByAces(const glm::vec3& radiance) {
+    glm::vec3 shown;
+    for (int c = 0; c < 3; ++c) {
+        const double x = static_cast<double>(radiance[c]);
+        shown[c] =
+            static_cast<float>(std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0));
+    }
+    return shown;
+}
+
+/// The brightness that the curve shows as t: the greater root of a quadratic.
+float brightnessShownAs(double t) {
+    const double a = k0 - t * k3, b = (k1 - t * k4) / a, c = -t * k5 / a;
+    return static_cast<float>(-0.5 * b + std::sqrt(0.25 * b * b - c));
+}
+
+}  // namespace
+
+FlipImage::FlipImage(const ImageView& image, float pixelsPerDegree)
+    : width_(image.width), height_(image.height), pixelsPerDegree_(pixelsPerDegree) {
+    if (!visible(image, pixelsPerDegree)) return;
+    seen_ = std::make_unique<Seen>(see(image, colourMatrices(), pixelsPerDegree, [&](std::size_t i) {
+        const glm::vec3& p = image.pixels[i];
+        return glm::vec3(linearFromSrgb(p.x), linearFromSrgb(p.y), linearFromSrgb(p.z));
+    }));
+}
+FlipImage::FlipImage() = default;
+FlipImage::~FlipImage() = default;
+FlipImage::FlipImage(FlipImage&&) noexcept = default;
+FlipImage& FlipImage::operator=(FlipImage&&) noexcept = default;
+
+std::vector<float> flip(const FlipImage& test, const FlipImage& reference) {
+    if (!test.seen_ || !reference.seen_ || test.width_ != reference.width_ ||
+        test.height_ != reference.height_ || test.pixelsPerDegree_ != reference.pixelsPerDegree_)
+        return {};
+    return compare(*test.seen_, *reference.seen_, test.width_, test.height_);
+}
+
+std::vector<float> flip(const ImageView& test, const ImageView& reference, float pixelsPerDegree) {
+    return flip(FlipImage(test, pixelsPerDegree), FlipImage(reference, pixelsPerDegree));
+}
+
+std::optional<FlipExposures> flipExposures(const ImageView& reference) {
+    if (!visible(reference, 1)) return std::nullopt;
+    std::vector<float> luminance;
+    luminance.reserve(pixelCount(reference));
+    for (std::size_t i = 0; i < pixelCount(reference); ++i) {
+        const glm::vec3& p = reference.pixels[i];
+        const float y = 0.2126f * p.x + 0.7152f * p.y + 0.0722f * p.z;
+        if (!std::isfinite(y)) return std::nullopt;
+        luminance.push_back(y);
+    }
+    std::sort(luminance.begin(), luminance.end());
+    const std::size_t half = luminance.size() / 2;
+    const float median =
+        luminance.size() % 2 == 1 ? luminance[half] : 0.5f * (luminance[half - 1] + luminance[half]);
+    // The authors' floor for dark images.
+    constexpr float darkest = std::numeric_limits<float>::epsilon();
+    FlipExposures exposures;
+    exposures.start = std::log2(brightnessShownAs(kneeOfTheCurve) / std::max(luminance.back(), darkest));
+    exposures.stop = std::log2(brightnessShownAs(kneeOfTheCurve) / std::max(median, darkest));
+    exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop - exposures.start)));
+    return exposures;
+}
+
+std::vector<float> hdrFlip(const ImageView& test, const ImageView& reference, float pixelsPerDegree,
+                           const std::optional<FlipExposures>& given) {
+    if (!visible(test, pixelsPerDegree) || !visible(reference, pixelsPerDegree) ||
+        test.width != reference.width || test.height != reference.height)
+        return {};
+    const std::optional<FlipExposures> exposures = given ? given : flipExposures(reference);
+    if (!exposures || exposures->count < 1) return {};
+    const Colours colours = colourMatrices();
+    std::vector<float> worst(pixelCount(test), 0.0f);
+    for (int k = 0; k < exposures->count; ++k) {
+        const float share =
+            exposures->count == 1 ? 0 : static_cast<float>(k) / static_cast<float>(exposures->count - 1);
+        const float scale = std::exp2(exposures->start + share * (exposures->stop - exposures->start));
+        const auto seen = [&](const ImageView& image) {
+            return see(image, colours, pixelsPerDegree,
+                       [&](std::size_t i) { return shownByAces(scale * image.pixels[i]); });
+        };
+        const std::vector<float> error = compare(seen(test), seen(reference), test.width, test.height);
+        for (std::size_t i = 0; i < worst.size(); ++i)
+            // Written so that NaN is kept.
+            if (!(error[i] <= worst[i])) worst[i] = error[i];
+    }
+    return worst;
 }
 
 }  // namespace reflection

@@ -1,6 +1,7 @@
 #include "reflection/truth/ImageError.h"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "reflection/truth/SeparableFilter.h"
@@ -77,6 +78,25 @@ double ssim(const ImageView& test, const ImageView& reference, PixelMask mask) {
             ++counted;
         }
     return counted == 0 ? notANumber : sum / static_cast<double>(counted);
+}
+
+double flicker(const ImageView& now, const ImageView& before, const ImageView& truthNow,
+               const ImageView& truthBefore, PixelMask mask) {
+    if (!comparable(now, before, mask) || !comparable(now, truthNow, mask) ||
+        !comparable(now, truthBefore, mask))
+        return notANumber;
+    const std::size_t count = static_cast<std::size_t>(now.width) * static_cast<std::size_t>(now.height);
+    double sum = 0;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!mask.empty() && mask[i] == 0) continue;
+        const glm::dvec3 own = glm::dvec3(now.pixels[i]) - glm::dvec3(before.pixels[i]);
+        const glm::dvec3 wanted = glm::dvec3(truthNow.pixels[i]) - glm::dvec3(truthBefore.pixels[i]);
+        const glm::dvec3 off = glm::abs(own - wanted);
+        sum += off.x + off.y + off.z;
+        ++counted;
+    }
+    return counted == 0 ? notANumber : sum / (3 * static_cast<double>(counted));
 }
 
 double meanError(std::span<const float> error, PixelMask mask) {
