@@ -41,6 +41,7 @@ int run(const Options& options) {
             shown = std::max(shown, done);
         };
         for (const stability::Row& row : campaign.run(settings)) {
+            if (row.tried == 0 && interrupted()) continue;
             results.add(stability::toJson(row));
             table.push_back({row.group + ": " + row.what, std::to_string(row.tried),
                              row.judged() ? std::to_string(row.failures) : "-", shortNumber(row.worst),

@@ -46,8 +46,11 @@ void tryField(const FieldKind& kind, SeededRandom& random, std::vector<Tally>& t
             // thousandth of a cell: touches of an edge or a top are nobody's miss.
             const double margin = std::max(1e-3 * static_cast<double>(field.cellSize()), farthest * 0x1p-22);
             if (answer.numerator == 0 || reference.depthOfPassage(ray, answer) < margin) continue;
+            const auto t = static_cast<double>(answer.numerator / answer.denominator);
+            // Columns have no bottom, Embree's boxes do.
+            if (ray.origin.z + t * static_cast<double>(ray.direction.z) < 0) continue;
             rays.push_back(ray);
-            truths.push_back(static_cast<float>(answer.numerator / answer.denominator));
+            truths.push_back(static_cast<float>(t));
         }
         std::vector<float> t(rays.size());
         const auto passedThrough = [&](std::size_t k) {

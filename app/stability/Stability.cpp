@@ -21,7 +21,7 @@ int Options::effort() const {
 }
 
 std::vector<Campaign> allCampaigns() {
-    return {{"tracer", tryTracer}, {"embree", tryEmbree}};
+    return {{"tracer", tryTracer}, {"embree", tryEmbree}, {"maps", tryReferenceMaps}, {"mesh", tryMesh}};
 }
 
 nlohmann::ordered_json toJson(const Row& row) {
