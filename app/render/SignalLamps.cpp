@@ -4,17 +4,11 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
+#include "app/frame/SignalLamp.h"
+
 namespace app {
 
 namespace gl = reflection::gl;
-
-namespace {
-
-constexpr float lampRadius = 0.1f;    // metres: lenses of 200 mm
-constexpr float lampSpacing = 0.27f;  // metres between lamp centres
-constexpr float lampAhead = 0.16f;    // metres in front of the head's middle: before its housing
-
-}  // namespace
 
 SignalLamps::SignalLamps(std::vector<city::SignalHead> heads)
     : heads_(std::move(heads)), buffer_(gl::Buffer::create()), array_(gl::VertexArray::create()) {
@@ -32,18 +26,13 @@ std::uint32_t SignalLamps::draw(const PassView& view, PassTarget target,
     instances_.clear();
     for (std::size_t i = 0; i < std::min(heads_.size(), colours.size()); ++i) {
         const city::SignalHead& head = heads_[i];
-        const bool red = colours[i] == vehicles::SignalColour::red;
-        const bool amber = colours[i] == vehicles::SignalColour::amber;
-        const glm::vec3 up(0, 0, red ? lampSpacing : amber ? 0.f : -lampSpacing);
-        const glm::vec3 position(glm::dvec3(head.position + up + lampAhead * head.facing) - view.eye);
+        const SignalLamp lamp = litLamp(head, colours[i]);
+        const glm::vec3 position(glm::dvec3(lamp.centre) - view.eye);
         if (glm::dot(position, head.facing) > 0) continue;  // seen from behind
-        if (view.allowedError(0.5f, glm::length(position)) > 2 * lampRadius) continue;
-        if (!view.frustum.touches(position, lampRadius)) continue;
-        const glm::vec3 colour = red     ? glm::vec3(5, 0.25f, 0.1f)
-                                 : amber ? glm::vec3(4.5f, 2, 0.1f)
-                                         : glm::vec3(0.2f, 3.6f, 1.6f);
-        instances_.push_back(
-            {glm::vec4(position, lampRadius), glm::vec4(head.facing, 0), glm::vec4(colour, 0)});
+        if (view.allowedError(0.5f, glm::length(position)) > 2 * SignalLamp::radius) continue;
+        if (!view.frustum.touches(position, SignalLamp::radius)) continue;
+        instances_.push_back({glm::vec4(position, SignalLamp::radius), glm::vec4(head.facing, 0),
+                              glm::vec4(lamp.radiance, 0)});
     }
     if (instances_.empty()) return 0;
     buffer_.replace(std::span<const Instance>(instances_));

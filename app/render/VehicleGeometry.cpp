@@ -1,101 +1,40 @@
 #include "app/render/VehicleGeometry.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <glm/geometric.hpp>
+#include <map>
+
+#include "app/frame/VehicleLevels.h"
 
 namespace app {
-
-namespace {
-
-/// Fewer triangles over the same vertices; `error`: metres by which they may be off. Keeps borders and seams
-/// unless sloppy.
-std::vector<std::uint32_t> simplified(const city::Mesh& mesh, std::size_t triangles, bool sloppy,
-                                      float& error) {
-    std::vector<std::uint32_t> indices(mesh.indices.size());
-    const float* positions = &mesh.vertices[0].position.x;
-    const std::size_t target = std::min(triangles * 3, indices.size());
-    float relative = 0;
-    const std::size_t count =
-        sloppy ? meshopt_simplifySloppy(indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
-                                        mesh.vertices.size(), sizeof(city::Vertex), target, 1.0f, &relative)
-               : meshopt_simplify(indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
-                                  mesh.vertices.size(), sizeof(city::Vertex), target, 1.0f, 0, &relative);
-    indices.resize(count);
-    error = relative * meshopt_simplifyScale(positions, mesh.vertices.size(), sizeof(city::Vertex));
-    return indices;
-}
-
-}  // namespace
 
 VehicleGeometry::VehicleGeometry(std::span<const vehicles::VehicleModel> models) {
     std::vector<VehicleVertex> vertices;
     std::vector<std::uint32_t> indices;
-    const auto add = [&](const city::Mesh& mesh) {
-        const MeshRange range{static_cast<std::uint32_t>(indices.size()),
-                              static_cast<std::uint32_t>(mesh.indices.size()),
-                              static_cast<std::int32_t>(vertices.size())};
+    std::map<const city::Mesh*, std::int32_t> bases;  // levels may share vertices
+    const auto add = [&](const VehicleLevels::Level& level) {
+        const auto [base, isNew] =
+            bases.try_emplace(level.vertices, static_cast<std::int32_t>(vertices.size()));
         constexpr auto last = static_cast<std::uint32_t>(vehicles::Surface::count) - 1;
-        for (const city::Vertex& v : mesh.vertices)
-            vertices.push_back({v.position, packNormal(v.normal), std::min(v.material, last)});
-        indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
-        return range;
-    };
-    const auto addCoarser = [&](const city::Mesh& mesh, const MeshRange& fine, std::size_t triangles,
-                                bool sloppy, float& error) {
-        const std::vector<std::uint32_t> coarse = simplified(mesh, triangles, sloppy, error);
+        if (isNew)
+            for (const city::Vertex& v : level.vertices->vertices)
+                vertices.push_back({v.position, packNormal(v.normal), std::min(v.material, last)});
         const MeshRange range{static_cast<std::uint32_t>(indices.size()),
-                              static_cast<std::uint32_t>(coarse.size()), fine.baseVertex};
-        indices.insert(indices.end(), coarse.begin(), coarse.end());
+                              static_cast<std::uint32_t>(level.indices.size()), base->second};
+        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
         return range;
     };
     for (const vehicles::VehicleModel& model : models) {
+        const VehicleLevels levels = vehicleLevels(model);
         Model m;
-        city::Aabb box;
-        for (std::size_t i = 0; i < model.levels.size(); ++i) {
-            const vehicles::VehicleModel::Level& level = model.levels[i];
-            m.levels.push_back({add(level.body), level.wheelsInBody, level.error});
-            box.extend(level.body.bounds());
-            if (i + 1 == model.levels.size()) break;
-            const double fine = static_cast<double>(level.body.triangleCount());
-            const double next = static_cast<double>(model.levels[i + 1].body.triangleCount());
-            if (next * 4 >= fine) continue;
-            float error = 0;
-            const MeshRange between =
-                addCoarser(level.body, m.levels.back().body, static_cast<std::size_t>(std::sqrt(fine * next)),
-                           false, error);
-            if (level.error + error < model.levels[i + 1].error)
-                m.levels.push_back({between, level.wheelsInBody, level.error + error});
-        }
-        if (!model.wheel.empty()) {
-            m.wheelLevels.push_back({add(model.wheel), 0});
-            for (std::size_t triangles : {700u, 250u, 90u}) {
-                float error = 0;
-                const MeshRange coarse =
-                    addCoarser(model.wheel, m.wheelLevels.front().mesh, triangles, triangles < 500, error);
-                if (coarse.indexCount >= 40 * 3 &&
-                    coarse.indexCount < m.wheelLevels.back().mesh.indexCount / 3 * 2)
-                    m.wheelLevels.push_back({coarse, error});
-            }
-        }
-        m.wheels = model.wheels;
-        // A steered wheel may stick out of the body: its bounding sphere in any position.
-        float wheelRadius = 0;
-        for (const city::Vertex& v : model.wheel.vertices)
-            wheelRadius = std::max(wheelRadius, glm::length(v.position));
-        for (const auto& wheel : model.wheels) {
-            if (model.wheel.empty()) break;
-            box.extend(wheel.centre - glm::vec3(wheelRadius));
-            box.extend(wheel.centre + glm::vec3(wheelRadius));
-        }
-        if (!box.empty()) {
-            m.centre = box.centre();
-            m.halfSize = 0.5f * box.size();
-            m.radius = glm::length(m.halfSize);
-        }
+        for (const VehicleLevels::Level& level : levels.bodies)
+            m.levels.push_back({add(level), level.wheelsInBody, level.error});
+        for (const VehicleLevels::Level& level : levels.wheels)
+            m.wheelLevels.push_back({add(level), level.error});
+        m.wheels = levels.places;
+        m.centre = levels.centre;
+        m.halfSize = levels.halfSize;
+        m.radius = levels.radius;
         models_.push_back(std::move(m));
     }
 

@@ -11,9 +11,8 @@
 
 namespace app {
 
-/// The vehicle models' meshes on the GPU: one vertex and one index buffer for all. Where a model's next level
-/// has less than a quarter of the triangles, a level between is made; wheels get coarser levels too, as four
-/// fine wheels weigh more than a coarse body.
+/// The vehicle models' meshes on the GPU, in the levels of VehicleLevels: one vertex and one index buffer for
+/// all.
 class VehicleGeometry {
   public:
     struct Level {

@@ -1,31 +1,16 @@
 #include "app/render/VehiclePass.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
-#include <numbers>
 #include <tuple>
+
+#include "app/frame/VehicleLevels.h"
+#include "app/frame/VehicleShading.h"
 
 namespace app {
 
 namespace {
-
-glm::mat3 aboutY(double angle) {
-    const auto c = static_cast<float>(std::cos(angle));
-    const auto s = static_cast<float>(std::sin(angle));
-    return glm::mat3(c, 0, -s, 0, 1, 0, s, 0, c);
-}
-
-glm::mat3 aboutZ(double angle) {
-    const auto c = static_cast<float>(std::cos(angle));
-    const auto s = static_cast<float>(std::sin(angle));
-    return glm::mat3(c, s, 0, -s, c, 0, 0, 0, 1);
-}
-
-glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {
-    return aboutZ(pose.heading) * aboutY(-pose.pitch);
-}
 
 VehicleInstance instanceOf(const glm::mat3& r, const glm::vec3& t, const vehicles::VehiclePose& pose,
                            float layer) {
@@ -106,10 +91,8 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                 ++wheelLevel;
             const MeshRange& wheelMesh = model.wheelLevels[wheelLevel].mesh;
             for (const vehicles::VehicleModel::Wheel& wheel : model.wheels) {
-                glm::mat3 turn = aboutY(pose.wheelAngle);
-                if (wheel.steered) turn = aboutZ(pose.steering) * turn;
-                if (wheel.mirrored) turn = turn * aboutZ(std::numbers::pi);
-                add(wheelMesh, instanceOf(rotation * turn, position + rotation * wheel.centre, pose, layer));
+                add(wheelMesh, instanceOf(rotation * vehicleFromWheel(wheel, pose),
+                                          position + rotation * wheel.centre, pose, layer));
             }
         }
         ++counts.vehicles;
