@@ -134,6 +134,10 @@ CityModel loadOsmCity(const std::filesystem::path& file, const ImportOptions& op
     note(model, buildings.underground, "buildings underground were left out.");
     note(model, buildings.floating, "small parts of buildings with nothing below them were left out.");
     note(model, buildings.outside, "buildings outside the bounds were left out.");
+    if (data.cutToWidest)
+        model.notes.push_back(
+            "The file was cut to 32,768 m, beyond which positions are not good to a millimetre; "
+            "--size cuts out less.");
     note(model, built.repaired, "footprints crossed themselves and were mended.");
     note(model, built.degenerate, "footprints have no area or height and were left out.");
     note(model, data.missingNodeReferences,

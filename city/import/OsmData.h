@@ -63,6 +63,8 @@ struct OsmData {
     std::vector<OsmLine> lines;    ///< ways with tags, at least two known nodes
     std::vector<OsmArea> areas;    ///< of tags that make areas (see readOsm)
 
+    bool cutToWidest = false;  ///< the file covers more than a city may
+
     // What reading had to leave out.
     std::size_t missingNodeReferences = 0;
     std::size_t incompleteRelations = 0;  ///< multipolygons some of whose ways the file does not hold

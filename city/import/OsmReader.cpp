@@ -6,7 +6,9 @@
 #include <osmium/visitor.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -20,6 +22,8 @@ constexpr const char* areaKeys[] = {"building", "building:part", "natural",  "la
 
 /// A box wider than this is not a city: the header's bounds are taken to be wrong.
 constexpr double widestHeaderDegrees = 0.5;
+/// Metres. Up to here a float is a position to half a millimetre (2^-11 m): cities are cut to it.
+constexpr float widestHalf = 16384;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
     throw std::runtime_error(file.string() + ": " + what);
@@ -100,38 +104,69 @@ struct GeoBox {
     double west = 0, south = 0, east = 0, north = 0;
 };
 
-/// The box of the middle 98 per cent of the nodes that buildings and streets use, in each direction.
-std::optional<GeoBox> robustBox(const Objects& objects) {
-    std::vector<double> longitudes;
-    std::vector<double> latitudes;
-    const auto add = [&](osmium::Location location) {
-        longitudes.push_back(location.lon());
-        latitudes.push_back(location.lat());
-    };
+/// Where the city lies: the middle of what it covers, and half of that, metres east and north of it.
+struct Extent {
+    LocalFrame frame;
+    glm::vec2 half{0};
+};
+
+/// The rectangle inside the trapezium between two meridians.
+Extent extentOf(const GeoBox& box) {
+    const LocalFrame frame((box.south + box.north) / 2, (box.west + box.east) / 2, 0);
+    const glm::vec2 corner(glm::abs(frame.localFromGeodetic(box.north, box.east, 0)));
+    const glm::vec2 other(glm::abs(frame.localFromGeodetic(box.south, box.east, 0)));
+    return {frame, glm::min(corner, other)};
+}
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The rectangle of the middle 98 per cent of the nodes that buildings and streets use, in each direction.
+/// Measured in metres around their median on the globe: degrees say nothing at a pole, and jump at the
+/// antimeridian.
+std::optional<Extent> robustExtent(const Objects& objects) {
+    std::vector<osmium::Location> places;
     for (const auto& [id, way] : objects.ways) {
         if (!way->tags().has_key("building") && !way->tags().has_key("highway")) continue;
         for (const osmium::NodeRef& node : way->nodes())
             if (const auto found = objects.locations.find(node.ref()); found != objects.locations.end())
-                add(found->second);
+                places.push_back(found->second);
     }
-    if (longitudes.empty())
-        for (const auto& [id, location] : objects.locations) add(location);
-    if (longitudes.empty()) return std::nullopt;
-    std::sort(longitudes.begin(), longitudes.end());
-    std::sort(latitudes.begin(), latitudes.end());
-    const std::size_t cut = longitudes.size() / 100;
-    const std::size_t last = longitudes.size() - 1 - cut;
-    return GeoBox{longitudes[cut], latitudes[cut], longitudes[last], latitudes[last]};
+    if (places.empty())
+        for (const auto& [id, location] : objects.locations) places.push_back(location);
+    if (places.empty()) return std::nullopt;
+
+    constexpr double degree = std::numbers::pi / 180;
+    std::array<std::vector<double>, 3> globe;
+    for (const osmium::Location& place : places) {
+        const double latitude = place.lat() * degree, longitude = place.lon() * degree;
+        globe[0].push_back(std::cos(latitude) * std::cos(longitude));
+        globe[1].push_back(std::cos(latitude) * std::sin(longitude));
+        globe[2].push_back(std::sin(latitude));
+    }
+    const double x = median(globe[0]), y = median(globe[1]), z = median(globe[2]);
+    const LocalFrame near(std::atan2(z, std::hypot(x, y)) / degree, std::atan2(y, x) / degree, 0);
+    std::vector<double> east, north;
+    for (const osmium::Location& place : places) {
+        const glm::dvec3 local = near.localFromGeodetic(place.lat(), place.lon(), 0);
+        east.push_back(local.x);
+        north.push_back(local.y);
+    }
+    std::sort(east.begin(), east.end());
+    std::sort(north.begin(), north.end());
+    const std::size_t cut = places.size() / 100, last = places.size() - 1 - cut;
+    const glm::dvec2 low(east[cut], north[cut]), high(east[last], north[last]);
+    const glm::dvec3 middle = near.geodeticFromLocal(glm::dvec3(0.5 * (low + high), 0));
+    return Extent{LocalFrame(middle.x, middle.y, 0), glm::vec2(0.5 * (high - low))};
 }
 
 class Projection {
   public:
-    Projection(const GeoBox& box, std::optional<double> size)
-        : frame_((box.south + box.north) / 2, (box.west + box.east) / 2, 0) {
-        const glm::vec2 corner = glm::abs(local(box.north, box.east));
-        const glm::vec2 other = glm::abs(local(box.south, box.east));
-        // The trapezium between two meridians is cut to the rectangle inside it.
-        half_ = glm::min(corner, other);
+    Projection(const Extent& extent, std::optional<double> size)
+        : frame_(extent.frame), half_(glm::min(extent.half, glm::vec2(widestHalf))) {
         if (size) half_ = glm::min(half_, glm::vec2(static_cast<float>(*size / 2)));
     }
     glm::vec2 local(double latitude, double longitude) const {
@@ -254,14 +289,14 @@ class AreaBuilder {
     std::vector<osmium::object_id_type> outersOfBuildings_;
 };
 
-GeoBox boundsOf(const Objects& objects, const std::filesystem::path& file) {
+Extent extentOf(const Objects& objects, const std::filesystem::path& file) {
     const osmium::Box& box = objects.headerBox;
     if (box.valid() && box.top_right().lon() > box.bottom_left().lon() &&
         box.top_right().lat() > box.bottom_left().lat() &&
         box.top_right().lon() - box.bottom_left().lon() < widestHeaderDegrees)
-        return {box.bottom_left().lon(), box.bottom_left().lat(), box.top_right().lon(),
-                box.top_right().lat()};
-    const std::optional<GeoBox> robust = robustBox(objects);
+        return extentOf(
+            {box.bottom_left().lon(), box.bottom_left().lat(), box.top_right().lon(), box.top_right().lat()});
+    const std::optional<Extent> robust = robustExtent(objects);
     if (!robust)
         fail(file, "holds no nodes, so there is no city in it; export the area again with its nodes");
     return *robust;
@@ -286,10 +321,12 @@ OsmData readOsm(const std::filesystem::path& file, std::optional<double> size) {
     if (objects.locations.empty())
         fail(file, "holds no nodes, so there is no city in it; export the area again with its nodes");
 
-    const Projection projection(boundsOf(objects, file), size);
+    const Extent extent = extentOf(objects, file);
+    const Projection projection(extent, size);
     OsmData data;
     data.frame = projection.frame();
     data.halfSize = projection.half();
+    data.cutToWidest = std::max(extent.half.x, extent.half.y) > widestHalf && !size;
     if (!(data.halfSize.x > 1 && data.halfSize.y > 1))
         fail(file, "its bounds are less than two metres wide; export a larger area");
 
