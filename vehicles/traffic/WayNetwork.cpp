@@ -29,19 +29,19 @@ void sampleLine(WayNetwork& network, Way& way, const std::vector<glm::vec3>& lin
         while (k + 1 < along.size() && along[k] < s) ++k;
         const double d = along[k] - along[k - 1];
         const double t = d > 0 ? std::clamp((s - along[k - 1]) / d, 0.0, 1.0) : 0;
-        network.samples.push_back(glm::vec3((1 - t) * glm::dvec3(line[k - 1]) + t * glm::dvec3(line[k])));
+        network.samples.push_back((1 - t) * glm::dvec3(line[k - 1]) + t * glm::dvec3(line[k]));
     }
 }
 
 void limitSpeeds(WayNetwork& network, const Way& way, double limit) {
-    const glm::vec3* p = network.samples.data() + way.firstSample;
+    const glm::dvec3* p = network.samples.data() + way.firstSample;
     const std::uint32_t n = way.sampleCount;
     std::vector<double> speed(n, limit);
     for (std::uint32_t i = 1; i + 1 < n; ++i) {
         // Turn over a few metres, so that the corners of a polyline do not count as points of no radius.
         const std::uint32_t reach = std::min({i, n - 1 - i, 3U});
-        const glm::dvec3 u(p[i] - p[i - reach]);
-        const glm::dvec3 v(p[i + reach] - p[i]);
+        const glm::dvec3 u = p[i] - p[i - reach];
+        const glm::dvec3 v = p[i + reach] - p[i];
         const double angle = std::abs(std::atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y));
         const double curvature = angle / (reach * way.spacing);
         if (curvature > 1e-4)
@@ -100,8 +100,8 @@ glm::dvec3 WayNetwork::pointAt(std::uint32_t index, double s) const {
     const double x = std::clamp(s / way.spacing, 0.0, static_cast<double>(way.sampleCount - 1));
     const auto i = std::min(static_cast<std::uint32_t>(x), way.sampleCount - 2);
     const double t = x - i;
-    const glm::vec3* p = samples.data() + way.firstSample + i;
-    return (1 - t) * glm::dvec3(p[0]) + t * glm::dvec3(p[1]);
+    const glm::dvec3* p = samples.data() + way.firstSample + i;
+    return (1 - t) * p[0] + t * p[1];
 }
 
 double WayNetwork::speedAt(std::uint32_t index, double s) const {

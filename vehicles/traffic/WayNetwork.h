@@ -54,7 +54,7 @@ struct WayNetwork {
     WayNetwork(const city::RoadNetwork& roads, std::span<const VehicleKind> kinds);
 
     std::vector<Way> ways;
-    std::vector<glm::vec3> samples;
+    std::vector<glm::dvec3> samples;  ///< double: a float's steps would show in the way of a car far out
     std::vector<float> speeds;  ///< one a sample: what bends and the limit allow, braking for what follows on
                                 ///< the way included
     std::uint32_t zoneCount = 0;

@@ -71,7 +71,7 @@ class Reach {
             for (std::uint32_t i = 0; i < part.sampleCount; ++i) {
                 const double s = i * part.spacing;
                 if (s < from || s > to) continue;
-                const glm::vec3 p = network_.samples[part.firstSample + i];
+                const glm::dvec3 p = network_.samples[part.firstSample + i];
                 if (!line_.empty() && glm::distance(line_.back(), glm::dvec2(p)) < 1e-4) continue;
                 line_.push_back(glm::dvec2(p));
                 ids_.push_back(part.firstSample + i);
@@ -206,7 +206,7 @@ void classify(WayNetwork& network, std::span<const Contact> contacts) {
     Way& b = network.ways[any.b];
     double a0 = 1e18, a1 = -1e18, b0 = 1e18, b1 = -1e18;
     bool along = true;
-    float apart = 1e9f;
+    double apart = 1e9;
     for (const Contact& c : contacts) {
         a0 = std::min(a0, c.i * a.spacing);
         a1 = std::max(a1, c.i * a.spacing);
@@ -257,7 +257,7 @@ void findZones(WayNetwork& network, std::span<const VehicleKind> kinds) {
         }
     }
     const double cell = std::max(4.0, 2.0 * widest + 1);
-    const auto key = [&](const glm::vec3& p, int dx, int dy) {
+    const auto key = [&](const glm::dvec3& p, int dx, int dy) {
         const auto x = static_cast<std::int64_t>(std::floor(p.x / cell)) + dx;
         const auto y = static_cast<std::int64_t>(std::floor(p.y / cell)) + dy;
         return static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^ static_cast<std::uint64_t>(y);
@@ -280,7 +280,7 @@ void findZones(WayNetwork& network, std::span<const VehicleKind> kinds) {
     for (std::uint32_t s = 0; s < network.samples.size(); ++s) {
         if (!(reach.at(s) > 0)) continue;
         const std::uint32_t w = wayOf[s];
-        const glm::vec3 p = network.samples[s];
+        const glm::dvec3 p = network.samples[s];
         for (int dx = -1; dx <= 1; ++dx) {
             for (int dy = -1; dy <= 1; ++dy) {
                 const auto found = cells.find(key(p, dx, dy));
@@ -288,7 +288,7 @@ void findZones(WayNetwork& network, std::span<const VehicleKind> kinds) {
                 for (std::uint32_t t : found->second) {
                     const std::uint32_t v = wayOf[t];
                     if (v <= w) continue;
-                    const glm::vec3 q = network.samples[t];
+                    const glm::dvec3 q = network.samples[t];
                     // Bridges: four metres of height keep vehicles apart.
                     if (std::abs(p.z - q.z) > 4) continue;
                     const double sum = reach.at(s) + reach.at(t) + clearance;
