@@ -52,6 +52,8 @@ std::vector<Row> tryTracer(const Options& options);
 std::vector<Row> tryEmbree(const Options& options);
 std::vector<Row> tryReferenceMaps(const Options& options);
 std::vector<Row> tryMesh(const Options& options);
+std::vector<Row> tryFrames(const Options& options);
+std::vector<Row> tryTraffic(const Options& options);
 
 /// All of them, in the order in which they are told.
 std::vector<Campaign> allCampaigns();
