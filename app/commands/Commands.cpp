@@ -3,7 +3,8 @@
 namespace app {
 
 std::vector<Command> allCommands() {
-    return {tourCommand(), bakeCommand(), benchCommand(), exportCommand(), infoCommand(), stabilityCommand()};
+    return {tourCommand(), bakeCommand(),      benchCommand(), exportCommand(),
+            infoCommand(), stabilityCommand(), truthCommand()};
 }
 
 }  // namespace app

@@ -11,6 +11,7 @@ Command bakeCommand();
 Command benchCommand();
 Command exportCommand();
 Command infoCommand();
+Command truthCommand();
 Command stabilityCommand();
 
 /// Every command of the program, in the order in which --help lists them.

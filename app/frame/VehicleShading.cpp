@@ -11,6 +11,8 @@ namespace app {
 
 namespace {
 
+constexpr float inversePi = std::numbers::inv_pi_v<float>;
+
 struct SurfaceOptics {
     glm::vec3 albedo;
     float f0;
@@ -31,35 +33,45 @@ constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::
 
 }  // namespace
 
-glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface,
-                          const vehicles::VehiclePose& pose, const glm::vec3& normal,
-                          const glm::vec3& towardsEye) {
-    constexpr float inversePi = std::numbers::inv_pi_v<float>;
+CoatedVertex coatedVertex(const Lighting& lighting, vehicles::Surface surface,
+                          const vehicles::VehiclePose& pose, const glm::vec3& normal, float sun) {
     const SurfaceOptics& optics = surfaces[std::min(static_cast<std::size_t>(surface), surfaces.size() - 1)];
     const glm::vec3 albedo = surface == vehicles::Surface::paint ? pose.paint : optics.albedo;
     const glm::vec3 ambient =
         glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, 0.5f + 0.5f * normal.z) * 0.85f;
     const glm::vec3 light =
-        ambient + lighting.sunIrradiance * std::max(glm::dot(normal, lighting.sunDirection), 0.0f);
+        ambient + lighting.sunIrradiance * (sun * std::max(glm::dot(normal, lighting.sunDirection), 0.0f));
     const float lit = lighting.lampsLit ? 1.0f : 0.0f;
     glm::vec3 emission(0);
     if (surface == vehicles::Surface::headLamp) emission = glm::vec3(6.0f, 5.6f, 5.0f) * lit;
     if (surface == vehicles::Surface::tailLamp)
         emission = glm::vec3(1.6f, 0.05f, 0.03f) * (1.4f * (pose.braking ? 1.0f : 0.0f) + 0.35f * lit);
-    const glm::vec3 diffuse = albedo * light * inversePi + emission;
+    return {albedo * light * inversePi + emission, optics.f0, optics.f0 >= 0.03f ? 1.0f : 0.0f, sun};
+}
 
-    const float coat = optics.f0 >= 0.03f ? 1.0f : 0.0f;
-    const float grazing = 1 - std::max(glm::dot(normal, towardsEye), 0.0f);
+float coatFresnel(const CoatedVertex& point, float facing) {
+    const float grazing = 1 - std::max(facing, 0.0f);
     const float grazing2 = grazing * grazing;
-    const float fresnel = optics.f0 + (1 - optics.f0) * coat * grazing2 * grazing2 * grazing;
-    const glm::vec3 reflected = 2 * glm::dot(normal, towardsEye) * normal - towardsEye;
+    return point.f0 + (1 - point.f0) * point.coat * grazing2 * grazing2 * grazing;
+}
+
+glm::vec3 plainSurroundings(const Lighting& lighting, const CoatedVertex& point, const glm::vec3& reflected) {
     const float up = std::clamp(reflected.z * 2 + 0.5f, 0.0f, 1.0f);
-    glm::vec3 mirrored = glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, up) * (inversePi * 0.8f);
+    const glm::vec3 mirrored =
+        glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, up) * (inversePi * 0.8f);
     float glint = std::max(glm::dot(reflected, lighting.sunDirection), 0.0f);
     for (int doubling = 0; doubling < 7; ++doubling)
         glint *= glint;  // to the power of 128, as the shader does
-    mirrored += lighting.sunIrradiance * (8 * glint * coat);
-    return diffuse * (1 - fresnel) + mirrored * fresnel;
+    return mirrored + lighting.sunIrradiance * (8 * glint * point.coat * point.sun);
+}
+
+glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface,
+                          const vehicles::VehiclePose& pose, const glm::vec3& normal,
+                          const glm::vec3& towardsEye) {
+    const CoatedVertex point = coatedVertex(lighting, surface, pose, normal, 1);
+    const float fresnel = coatFresnel(point, glm::dot(normal, towardsEye));
+    const glm::vec3 reflected = 2 * glm::dot(normal, towardsEye) * normal - towardsEye;
+    return point.diffuse * (1 - fresnel) + plainSurroundings(lighting, point, reflected) * fresnel;
 }
 
 glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {

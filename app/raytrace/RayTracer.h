@@ -10,6 +10,7 @@
 
 #include "app/frame/FrameScene.h"
 #include "app/frame/SunMap.h"
+#include "app/raytrace/PatternSampler.h"
 #include "city/model/CityModel.h"
 #include "reflection/reference_maps/ReferenceMap.h"
 #include "vehicles/models/VehicleModel.h"
@@ -43,7 +44,9 @@ struct TracedPicture {
     std::vector<SeenKind> kind;
     /// Of vehicles their id, of all else 0.
     std::vector<std::uint32_t> vehicle;
-    std::vector<std::uint32_t> triangle;  ///< names a triangle of the scene within this picture
+    /// Material of the city, vehicles::Surface of vehicles; 0 elsewhere.
+    std::vector<std::uint32_t> surface;
+    std::vector<float> fresnel;  ///< share of the mirrored light; 0 but on mirroring vehicles
 
     /// Display colours, sRGB-encoded 0..1, as drawView leaves them.
     std::vector<glm::vec3> display(float exposure) const;
@@ -76,6 +79,9 @@ class RayTracer {
 
     /// The rasteriser's shadows from now on; null: rays to the sun.
     void useSunMap(std::shared_ptr<const SunMap> map);
+
+    /// How the rasteriser chooses textures' levels of detail for what is seen directly.
+    void useTextureFilter(TextureFilter filter);
 
     /// Takes over this frame's vehicles, signals and light. Before any tracing. Cost: a tree over the
     /// vehicles.

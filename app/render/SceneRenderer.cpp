@@ -241,6 +241,11 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
     }
 }
 
+std::shared_ptr<const SunMap> SceneRenderer::sunMap() {
+    impl_->updateShadow();
+    return impl_->options.shadows ? impl_->shadow.read() : nullptr;
+}
+
 const RenderCounters& SceneRenderer::counters() const {
     return impl_->counters;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/frame/FrameScene.h"
+#include "app/frame/SunMap.h"
 #include "city/model/CityModel.h"
 #include "reflection/gl/LocalMapTextures.h"
 #include "reflection/gl/SceneDrawer.h"
@@ -52,6 +53,10 @@ class SceneRenderer final : public reflection::SceneDrawer {
 
     void drawCube(const glm::dvec3& centre, const reflection::CubeTarget& target,
                   const reflection::CubeContent& content) override;
+
+    /// The shadows of the prepared scene's sun, read back: for rays that are to see the same. Waits for the
+    /// GPU; up to 128 MiB. Null without shadows.
+    std::shared_ptr<const SunMap> sunMap();
 
     const RenderCounters& counters() const;  ///< of the last drawView
 

@@ -51,6 +51,25 @@ ShadowMap::ShadowMap(const city::Aabb& box, int size) : box_(box), size_(size) {
     target_.requireComplete("the sun's shadows");
 }
 
+std::shared_ptr<const SunMap> ShadowMap::read() const {
+    auto map = std::make_shared<SunMap>();
+    map->shadowFromWorld = shadowFromWorld_;
+    map->normalOffset = normalOffset_;
+    map->size = size_;
+    map->depth.resize(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 2);
+    // The size in bytes is an int in OpenGL: rows by rows, as 16384 texels a side would not fit one call.
+    constexpr int rows = 1024;
+    for (int first = 0; first < size_; first += rows) {
+        const int count = std::min(rows, size_ - first);
+        glGetTextureSubImage(map_.name(), 0, 0, first, 0, size_, count, 1, GL_DEPTH_COMPONENT,
+                             GL_UNSIGNED_SHORT, size_ * count * 2,
+                             &map->depth[static_cast<std::size_t>(first) * static_cast<std::size_t>(size_)]);
+    }
+    return map;
+}
+
 bool ShadowMap::update(const glm::vec3& sunDirection, const std::function<void(const PassView&)>& drawDepth) {
     if (glm::dot(sunDirection, sun_) > redrawCosine) return false;
     sun_ = sunDirection;

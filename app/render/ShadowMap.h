@@ -3,7 +3,9 @@
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 
+#include "app/frame/SunMap.h"
 #include "app/render/PassTarget.h"
 #include "city/geometry/Aabb.h"
 #include "reflection/gl/Framebuffer.h"
@@ -26,6 +28,8 @@ class ShadowMap {
     const glm::mat4& shadowFromWorld() const { return shadowFromWorld_; }
     /// Metres by which receivers are moved along their normal before the lookup.
     float normalOffset() const { return normalOffset_; }
+    /// Copies the map to main memory.
+    std::shared_ptr<const SunMap> read() const;
     const reflection::gl::Texture& texture() const { return map_; }
 
   private:

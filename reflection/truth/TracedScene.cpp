@@ -11,6 +11,8 @@ namespace reflection {
 namespace {
 
 constexpr std::size_t packet = 8;
+/// The filter of a query is heard only where the scene says so.
+const RTCSceneFlags sceneFlags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
 /// What the filters need to know of the rays: found by the ray's id, its place in the packet.
 struct RayContext {
@@ -93,7 +95,7 @@ TracedMeshes::~TracedMeshes() {
 
 std::uint32_t TracedMeshes::add(std::span<const Part> parts) {
     RTCScene scene = rtcNewScene(impl_->device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, sceneFlags);
     for (unsigned id = 0; id < parts.size(); ++id) {
         const city::Mesh& mesh = *parts[id].mesh;
         if (mesh.triangleCount() == 0) continue;
@@ -132,7 +134,7 @@ struct TracedScene::Impl {
     void renew() {
         if (scene) rtcReleaseScene(scene);
         scene = rtcNewScene(meshes->device);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneFlags(scene, sceneFlags);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
         placed = 0;
     }

@@ -1,0 +1,140 @@
+#include "app/raytrace/RayShading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace app {
+
+namespace {
+
+constexpr float inversePi = std::numbers::inv_pi_v<float>;
+
+/// Metres by which rays to the sun start off the surface: a hundred roundings of a coordinate of a kilometre.
+constexpr float offSurface = 0.006f;
+
+template <class T>
+T blend(const T& a, const T& b, const T& c, const glm::vec2& w) {
+    return a * (1 - w.x - w.y) + b * w.x + c * w.y;
+}
+
+}  // namespace
+
+bool MetTriangle::meet(const glm::vec3& origin, const glm::vec3& direction, glm::vec2& weights) const {
+    const glm::vec3 e1 = position[1] - position[0], e2 = position[2] - position[0];
+    const glm::vec3 p = glm::cross(direction, e2);
+    const float determinant = glm::dot(e1, p);
+    if (determinant == 0 || !std::isfinite(1 / determinant)) return false;
+    const glm::vec3 from = origin - position[0];
+    weights = glm::vec2(glm::dot(from, p), glm::dot(direction, glm::cross(from, e1))) / determinant;
+    return std::isfinite(weights.x) && std::isfinite(weights.y);
+}
+
+glm::vec3 MetTriangle::facing() const {
+    const glm::vec3 n = glm::cross(position[1] - position[0], position[2] - position[0]);
+    const float length = glm::length(n);
+    return length > 0 ? n / length : glm::vec3(0);
+}
+
+MetTriangle RayShading::triangle(const PlacedMesh& placed, const reflection::TracedHit& hit) const {
+    const city::Mesh& mesh = meshes_->part(placed.mesh, hit.part);
+    MetTriangle met;
+    for (std::size_t k = 0; k < 3; ++k) {
+        met.corner[k] = &mesh.vertices[mesh.indices[3 * std::size_t{hit.triangle} + k]];
+        met.position[k] = glm::vec3(placed.worldFromMesh * glm::vec4(met.corner[k]->position, 1));
+    }
+    return met;
+}
+
+float RayShading::sunAt(const glm::vec3& position, const glm::vec3& normal) const {
+    if (sunMap_ != nullptr)
+        return sunMap_->lightAt(
+            glm::vec3(sunMap_->shadowFromWorld * glm::vec4(position + normal * sunMap_->normalOffset, 1)));
+    if (blockers_ == nullptr) return 1;
+    // Towards the side from which the sun shines: leaves are lit from both.
+    const float side = glm::dot(normal, lighting_.sunDirection) >= 0 ? offSurface : -offSurface;
+    const reflection::TracedRay ray{position + normal * side, lighting_.sunDirection, 0};
+    std::uint8_t blocked = 0;
+    blockers_->blocked({&ray, 1}, {&blocked, 1});
+    return blocked != 0 ? 0.0f : 1.0f;
+}
+
+PatternSampler::Level RayShading::levelOf(const MetTriangle& triangle, float footprint, float cosine) const {
+    const float area = glm::length(
+        glm::cross(triangle.position[1] - triangle.position[0], triangle.position[2] - triangle.position[0]));
+    const glm::vec2 s = triangle.corner[1]->texcoord - triangle.corner[0]->texcoord;
+    const glm::vec2 t = triangle.corner[2]->texcoord - triangle.corner[0]->texcoord;
+    if (!(area > 0)) return {};
+    const float density = std::sqrt(std::abs(s.x * t.y - s.y * t.x) / area);
+    // Between the footprint's short side and its long one.
+    return meshes_->patterns().levelOf(footprint * density / std::sqrt(std::max(std::abs(cosine), 0.01f)),
+                                       TextureFilter::standard);
+}
+
+glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
+                           PatternSampler::Level level) const {
+    const glm::mat3 linear(placed.worldFromMesh);
+    glm::vec3 normal[3], shaded[3], sunlit[3];
+    bool sunny = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const city::Vertex& v = *triangle.corner[k];
+        normal[k] = placed.mesh == meshes_->chunks() || placed.mesh == meshes_->whole()
+                        ? v.normal
+                        : glm::normalize(linear * v.normal);
+        glm::vec3 tint(0.8f), emission(0);
+        if (v.material < city_->materials.size()) {
+            tint = city_->materials[v.material].tint;
+            emission = city_->materials[v.material].emission;
+        }
+        const glm::vec3 albedo = tint * inversePi;
+        const float cosine = std::max(glm::dot(normal[k], lighting_.sunDirection), 0.0f);
+        shaded[k] =
+            albedo * glm::mix(lighting_.groundIrradiance, lighting_.skyIrradiance, 0.5f + 0.5f * normal[k].z);
+        if (lighting_.lampsLit) shaded[k] += emission;
+        sunlit[k] = albedo * lighting_.sunIrradiance * cosine;
+        sunny = sunny || cosine > 0;
+    }
+    const std::uint32_t material = triangle.corner[2]->material;  // flat: of the provoking corner
+    const std::uint32_t pattern = material < city_->materials.size()
+                                      ? static_cast<std::uint32_t>(city_->materials[material].pattern)
+                                      : 0;
+    const glm::vec2 texcoord = blend(triangle.corner[0]->texcoord, triangle.corner[1]->texcoord,
+                                     triangle.corner[2]->texcoord, weights);
+    const glm::vec3 root(meshes_->patterns().at(pattern, texcoord, level));
+    glm::vec3 light = blend(shaded[0], shaded[1], shaded[2], weights);
+    if (sunny)
+        light += blend(sunlit[0], sunlit[1], sunlit[2], weights) *
+                 sunAt(triangle.at(weights), blend(normal[0], normal[1], normal[2], weights));
+    return root * root * light;
+}
+
+glm::vec3 RayShading::vehicleNormal(const PlacedMesh& placed, const MetTriangle& triangle,
+                                    const glm::vec2& weights) const {
+    const glm::mat3 linear(placed.worldFromMesh);
+    glm::vec3 n[3];
+    for (std::size_t k = 0; k < 3; ++k) n[k] = glm::normalize(linear * triangle.corner[k]->normal);
+    return glm::normalize(blend(n[0], n[1], n[2], weights));
+}
+
+VehiclePoint RayShading::vehicle(const PlacedMesh& placed, const MetTriangle& triangle,
+                                 const glm::vec2& weights, const vehicles::VehiclePose& pose) const {
+    const glm::mat3 linear(placed.worldFromMesh);
+    glm::vec3 n[3];
+    CoatedVertex c[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        n[k] = glm::normalize(linear * triangle.corner[k]->normal);
+        c[k] = coatedVertex(lighting_, static_cast<vehicles::Surface>(triangle.corner[k]->material), pose,
+                            n[k], sunAt(triangle.position[k], n[k]));
+    }
+    VehiclePoint point;
+    point.normal = glm::normalize(blend(n[0], n[1], n[2], weights));
+    point.coat.diffuse = blend(c[0].diffuse, c[1].diffuse, c[2].diffuse, weights);
+    point.coat.f0 = blend(c[0].f0, c[1].f0, c[2].f0, weights);
+    point.coat.coat = blend(c[0].coat, c[1].coat, c[2].coat, weights);
+    point.coat.sun = blend(c[0].sun, c[1].sun, c[2].sun, weights);
+    return point;
+}
+
+}  // namespace app

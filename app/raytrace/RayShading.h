@@ -1,0 +1,73 @@
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "app/frame/SunMap.h"
+#include "app/frame/VehicleShading.h"
+#include "app/raytrace/RayScene.h"
+
+namespace app {
+
+/// A triangle that a ray met, in world coordinates.
+struct MetTriangle {
+    const city::Vertex* corner[3];
+    glm::vec3 position[3];
+
+    /// Barycentrics (weights of the second and third corner) where a line meets the triangle's plane, also
+    /// outside the triangle; false for a line along the plane.
+    bool meet(const glm::vec3& origin, const glm::vec3& direction, glm::vec2& weights) const;
+    glm::vec3 at(const glm::vec2& weights) const {
+        return position[0] * (1 - weights.x - weights.y) + position[1] * weights.x + position[2] * weights.y;
+    }
+    glm::vec3 facing() const;  ///< unit normal of the plane, towards the front; 0 for a degenerate triangle
+};
+
+/// A point of a vehicle, shaded but for what it mirrors.
+struct VehiclePoint {
+    CoatedVertex coat;
+    glm::vec3 normal{0};  ///< unit, interpolated
+};
+
+/// Twins of city.vert, city.frag, vehicle.vert and vehicle.frag.
+class RayShading {
+  public:
+    RayShading(const city::CityModel& city, const RayMeshes& meshes) : city_(&city), meshes_(&meshes) {}
+
+    void setLighting(const Lighting& lighting) { lighting_ = lighting; }
+    const Lighting& lighting() const { return lighting_; }
+    /// The rasteriser's shadows; null: rays towards the sun against `blockers`.
+    void setSun(const SunMap* map, const reflection::TracedScene* blockers) {
+        sunMap_ = map;
+        blockers_ = blockers;
+    }
+
+    MetTriangle triangle(const PlacedMesh& placed, const reflection::TracedHit& hit) const;
+
+    /// Radiance of a point of the city. `level` from the footprint of the pixel or ray.
+    glm::vec3 city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
+                   PatternSampler::Level level) const;
+    /// Texture level for a ray that is `footprint` metres wide and meets the triangle at this cosine.
+    PatternSampler::Level levelOf(const MetTriangle& triangle, float footprint, float cosine) const;
+
+    VehiclePoint vehicle(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
+                         const vehicles::VehiclePose& pose) const;
+    /// The interpolated normal alone.
+    glm::vec3 vehicleNormal(const PlacedMesh& placed, const MetTriangle& triangle,
+                            const glm::vec2& weights) const;
+    /// Reflectance at normal incidence of the triangle's surface: its corners are of one.
+    static bool brushed(const CoatedVertex& coat) { return coat.f0 > 0.3f && coat.f0 < 0.5f; }
+
+    /// Share of the sun's light at a point, `normal` as interpolated.
+    float sunAt(const glm::vec3& position, const glm::vec3& normal) const;
+
+  private:
+    const city::CityModel* city_;
+    const RayMeshes* meshes_;
+    Lighting lighting_;
+    const SunMap* sunMap_ = nullptr;
+    const reflection::TracedScene* blockers_ = nullptr;
+};
+
+}  // namespace app
