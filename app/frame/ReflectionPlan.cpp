@@ -24,11 +24,19 @@ double errorOnScreen(float diameterPixels, double metres) {
     return static_cast<double>(diameterPixels) * metres / (3.14159265 * streetHalfWidth);
 }
 
+constexpr int sizeClasses = static_cast<int>(reflection::localMapFaceSizes.size());
+
+std::uint64_t texelsOf(int sizeClass) {
+    const auto side =
+        static_cast<std::uint64_t>(reflection::localMapFaceSizes[static_cast<std::size_t>(sizeClass)]);
+    return 6 * side * side;
+}
+
 }  // namespace
 
 int sizeClassFor(float diameterPixels, float texelsPerPixel, int held) {
     const auto wanted = [texelsPerPixel](float pixels) {
-        int c = static_cast<int>(reflection::localMapFaceSizes.size()) - 1;
+        int c = sizeClasses - 1;
         while (c > 0 && static_cast<float>(reflection::localMapFaceSizes[static_cast<std::size_t>(c)]) <
                             pixels * texelsPerPixel)
             --c;
@@ -45,6 +53,18 @@ void ReflectionPlanner::reset() {
     held_.clear();
     for (std::size_t c = 0; c < free_.size(); ++c) free_[c].clear();
     std::fill(layers_.begin(), layers_.end(), 0);
+}
+
+int ReflectionPlanner::classWithRoom(int wanted, int layersAtMost, std::uint64_t texels) const {
+    const auto hasRoom = [&](int c) {
+        const auto k = static_cast<std::size_t>(c);
+        return !free_[k].empty() || layers_[k] < layersAtMost;
+    };
+    for (int c = wanted; c < sizeClasses; ++c)
+        if (hasRoom(c)) return c;
+    for (int c = wanted - 1; c >= 0 && texelsOf(c) <= texels; --c)
+        if (hasRoom(c)) return c;
+    return -1;
 }
 
 reflection::LocalMapSlot ReflectionPlanner::allocate(int sizeClass) {
@@ -90,12 +110,6 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
     ReflectionPlan plan;
     plan.slots.resize(scene.vehicles.size());
     plan.visible = static_cast<std::uint32_t>(seen.size());
-
-    const auto texelsOf = [](reflection::LocalMapSlot slot) {
-        const auto side = static_cast<std::uint64_t>(
-            reflection::localMapFaceSizes[static_cast<std::size_t>(slot.sizeClass)]);
-        return 6 * side * side;
-    };
 
     std::vector<MapJob> wanted;
     std::vector<float> diameters(scene.vehicles.size(), 0.0f);
@@ -154,28 +168,35 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
                 continue;
             }
         }
-        const std::uint64_t cost = texelsOf(job.slot);
+        const std::uint64_t cost = texelsOf(job.slot.sizeClass);
         const bool affordable =
             plan.jobs.empty() || plan.texels + cost <= options.texelBudget || options.everyFrame;
         if (!affordable && map.built) {
             ++plan.postponed;
             continue;
         }
-        if (!affordable && job.slot.sizeClass + 1 < static_cast<int>(reflection::localMapFaceSizes.size())) {
+        if (!affordable && job.slot.sizeClass + 1 < sizeClasses) {
             // A vehicle must not appear without a reflection: a coarse map now, the fine one when its turn
             // comes.
-            job.slot.sizeClass = static_cast<std::int16_t>(reflection::localMapFaceSizes.size() - 2);
+            job.slot.sizeClass = static_cast<std::int16_t>(sizeClasses - 2);
         }
         if (map.slot.sizeClass != job.slot.sizeClass) {
+            const std::uint64_t left =
+                options.texelBudget > plan.texels ? options.texelBudget - plan.texels : 0;
+            const int room = classWithRoom(job.slot.sizeClass, options.layersAtMost, left);
+            if (room < 0) {
+                ++(map.built ? plan.postponed : plan.crowdedOut);
+                continue;
+            }
             release(map.slot);
-            map.slot = allocate(job.slot.sizeClass);
+            map.slot = allocate(room);
         }
         job.slot = map.slot;
         map.centre = job.centre;
         map.neighbourMotion = 0;
         map.built = true;
         lenders.push_back(&map);
-        plan.texels += texelsOf(job.slot);
+        plan.texels += texelsOf(job.slot.sizeClass);
         plan.jobs.push_back(job);
     }
 
@@ -183,23 +204,7 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         if (const Held& map = held_[scene.vehicles[vehicle.index].id]; map.built)
             plan.slots[vehicle.index] = map.slot;
 
-    // How far the neighbours moved since the last frame, for maps out of sight as well: they may be shown
-    // again. A vehicle passing at distance r changes about (size / r)^2 of the map.
-    for (const vehicles::VehiclePose& own : scene.vehicles) {
-        const auto map = held_.find(own.id);
-        if (map == held_.end()) continue;
-        double motion = 0;
-        for (const vehicles::VehiclePose& other : scene.vehicles) {
-            if (other.id == own.id || other.speed == 0) continue;
-            const glm::dvec3 apart = other.position - own.position;
-            const double squared = glm::dot(apart, apart);
-            if (squared > neighbourRange * neighbourRange) continue;
-            constexpr double vehicleSize = 2;
-            motion = std::max(motion, other.speed * elapsed *
-                                          std::min(1.0, vehicleSize * vehicleSize / std::max(squared, 1.0)));
-        }
-        map->second.neighbourMotion += motion;
-    }
+    countMotion(scene, elapsed);
     for (auto it = held_.begin(); it != held_.end();) {
         if (it->second.lastSeen + framesKept < frame_) {
             release(it->second.slot);
@@ -209,6 +214,37 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         }
     }
     return plan;
+}
+
+/// How far the neighbours moved since the last frame, for maps out of sight as well: they may be shown again.
+/// A vehicle passing at distance r changes about (size / r)^2 of the map.
+void ReflectionPlanner::countMotion(const FrameScene& scene, double elapsed) {
+    // By x, so that of a great many vehicles each map looks only at those in a strip around it.
+    std::vector<const vehicles::VehiclePose*> moving;
+    for (const vehicles::VehiclePose& pose : scene.vehicles)
+        if (pose.speed != 0) moving.push_back(&pose);
+    std::sort(moving.begin(), moving.end(),
+              [](const auto* a, const auto* b) { return a->position.x < b->position.x; });
+    for (const vehicles::VehiclePose& own : scene.vehicles) {
+        const auto map = held_.find(own.id);
+        if (map == held_.end() || !map->second.built) continue;
+        double motion = 0;
+        const auto first = std::lower_bound(
+            moving.begin(), moving.end(), own.position.x - neighbourRange,
+            [](const vehicles::VehiclePose* pose, double x) { return pose->position.x < x; });
+        for (auto it = first; it != moving.end(); ++it) {
+            const vehicles::VehiclePose& other = **it;
+            if (other.position.x > own.position.x + neighbourRange) break;
+            if (other.id == own.id) continue;
+            const glm::dvec3 apart = other.position - own.position;
+            const double squared = glm::dot(apart, apart);
+            if (squared > neighbourRange * neighbourRange) continue;
+            constexpr double vehicleSize = 2;
+            motion = std::max(motion, other.speed * elapsed *
+                                          std::min(1.0, vehicleSize * vehicleSize / std::max(squared, 1.0)));
+        }
+        map->second.neighbourMotion += motion;
+    }
 }
 
 }  // namespace app

@@ -30,12 +30,13 @@ struct MapJob {
 struct ReflectionPlan {
     std::vector<MapJob> jobs;  ///< most urgent first
     std::vector<reflection::LocalMapSlot>
-        slots;                    ///< one per FrameScene::vehicles; invalid: not reflected this frame
-    std::uint32_t visible = 0;    ///< vehicles seen
-    std::uint32_t fresh = 0;      ///< maps kept because their error on screen is below the threshold
-    std::uint32_t postponed = 0;  ///< maps that the budget left for a later frame
-    std::uint32_t shared = 0;     ///< vehicles that show a neighbour's map
-    std::uint64_t texels = 0;     ///< to be built
+        slots;                     ///< one per FrameScene::vehicles; invalid: not reflected this frame
+    std::uint32_t visible = 0;     ///< vehicles seen
+    std::uint32_t fresh = 0;       ///< maps kept because their error on screen is below the threshold
+    std::uint32_t postponed = 0;   ///< maps that the budget left for a later frame
+    std::uint32_t shared = 0;      ///< vehicles that show a neighbour's map
+    std::uint32_t crowdedOut = 0;  ///< vehicles without a map because every place for one is taken
+    std::uint64_t texels = 0;      ///< to be built
 };
 
 struct PlanOptions {
@@ -44,7 +45,10 @@ struct PlanOptions {
     float texelsPerPixel = 0.5f;  ///< face size wanted for each pixel of the vehicle's projected diameter
     float errorThreshold = 0.5f;  ///< pixels of shift of a reflected feature that are let stand
     bool everyFrame = false;      ///< rebuild all visible maps every frame (measuring; the paper's way)
-    bool share = true;            ///< a vehicle may show a neighbour's map where that is within the threshold
+    /// Maps of one size class at most: what every OpenGL 4.5 grants (table 23.53: arrays of 2048 layers, six
+    /// a cube).
+    int layersAtMost = 341;
+    bool share = true;  ///< a vehicle may show a neighbour's map where that is within the threshold
 };
 
 /// Decides which local maps are built when. Keeps what it planned before: a map's age is the distance that
@@ -79,6 +83,10 @@ class ReflectionPlanner {
     /// The map of least error on this vehicle among the lenders' that is below the threshold, or null.
     static const Held* lenderFor(const MapJob& job, float diameterPixels, float threshold,
                                  std::span<const Held* const> lenders);
+    /// A class with a free place: the wanted one, else the next coarser one, else a finer one that costs no
+    /// more than `texels`; -1: none.
+    int classWithRoom(int wanted, int layersAtMost, std::uint64_t texels) const;
+    void countMotion(const FrameScene& scene, double elapsed);
     reflection::LocalMapSlot allocate(int sizeClass);
     void release(reflection::LocalMapSlot slot);
 

@@ -12,6 +12,8 @@ namespace {
 
 constexpr GLenum format = GL_R11F_G11F_B10F;
 constexpr std::size_t texelBytes = 4;
+/// Cubes in an array that every OpenGL 4.5 grants: 2048 layers, six a cube.
+constexpr int grantedLayers = 341;
 
 }  // namespace
 
@@ -58,7 +60,7 @@ LocalMapAtlas& LocalMapAtlas::operator=(LocalMapAtlas&&) noexcept = default;
 void LocalMapAtlas::reserve(int sizeClass, int layers) {
     Impl::SizeClass& c = impl_->classes[static_cast<std::size_t>(sizeClass)];
     if (layers <= c.layers) return;
-    const int grown = std::max(layers, std::max(4, 2 * c.layers));
+    const int grown = std::max(layers, std::min(std::max(4, 2 * c.layers), grantedLayers));
     const int faceSize = localMapFaceSizes[static_cast<std::size_t>(sizeClass)];
     const int levels = gl::mipLevels(faceSize);
     gl::Texture larger = gl::Texture::cubeArray(format, faceSize, grown, levels);

@@ -305,6 +305,33 @@ TEST(ReflectionPlanTest, slotsAreReusedAfterVehiclesLeave) {
     for (const int n : planner.layersNeeded()) EXPECT_EQ(n, 0);
 }
 
+TEST(ReflectionPlanTest, noMoreMapsThanPlacesHoweverManyVehicles) {
+    Street street(9);
+    street.fill(400);
+    ReflectionPlanner planner;
+    PlanOptions options;
+    options.layersAtMost = 7;
+    options.texelBudget = 100'000'000;
+    options.share = false;
+    for (int frame = 0; frame < 200; ++frame) {
+        std::vector<SeenVehicle> seen;
+        for (std::uint32_t i = 0; i < street.scene.vehicles.size(); ++i) seen.push_back({i, 100});
+        const ReflectionPlan plan = planner.plan(street.scene, seen, heights, options);
+        std::set<std::pair<int, int>> used;
+        for (const reflection::LocalMapSlot& slot : plan.slots) {
+            if (!slot.valid()) continue;
+            EXPECT_LT(slot.layer, 7);
+            EXPECT_TRUE(used.emplace(slot.sizeClass, slot.layer).second);
+        }
+        EXPECT_EQ(used.size(), 7 * localMapFaceSizes.size()) << "every place is used, coarse ones and fine";
+        EXPECT_EQ(plan.crowdedOut, 400 - used.size());
+        EXPECT_EQ(plan.visible,
+                  plan.fresh + plan.shared + plan.postponed + plan.crowdedOut + plan.jobs.size());
+        for (const int layers : planner.layersNeeded()) EXPECT_LE(layers, 7);
+        street.step(1.0 / 30);
+    }
+}
+
 TEST(ReflectionPlanTest, sameFramesGiveTheSamePlans) {
     const auto run = [] {
         Street street(9);
