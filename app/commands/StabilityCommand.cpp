@@ -9,6 +9,7 @@
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
+#include "app/stability/DrawingCampaign.h"
 #include "app/stability/Stability.h"
 
 namespace app {
@@ -31,7 +32,9 @@ int run(const Options& options) {
     std::vector<std::vector<std::string>> table{
         {"what was tried", "how often", "failed", "worst", "bound", "", ""}};
     std::size_t outside = 0;
-    for (const stability::Campaign& campaign : stability::allCampaigns()) {
+    std::vector<stability::Campaign> campaigns = stability::allCampaigns();
+    campaigns.push_back({"drawing", stability::tryDrawing});
+    for (const stability::Campaign& campaign : campaigns) {
         if (interrupted()) break;
         Progress progress("stability: " + campaign.name, 1000, options.quiet);
         std::uint64_t shown = 0;

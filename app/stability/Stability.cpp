@@ -21,8 +21,8 @@ int Options::effort() const {
 }
 
 std::vector<Campaign> allCampaigns() {
-    return {{"tracer", tryTracer}, {"embree", tryEmbree}, {"maps", tryReferenceMaps},
-            {"mesh", tryMesh},     {"frames", tryFrames}, {"traffic", tryTraffic}};
+    return {{"tracer", tryTracer}, {"embree", tryEmbree},   {"maps", tryReferenceMaps}, {"mesh", tryMesh},
+            {"frames", tryFrames}, {"traffic", tryTraffic}, {"settings", trySettings}};
 }
 
 nlohmann::ordered_json toJson(const Row& row) {
