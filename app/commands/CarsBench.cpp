@@ -13,6 +13,7 @@
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ReflectionEngine.h"
+#include "app/raytrace/RayTracer.h"
 #include "app/render/Readback.h"
 #include "app/report/Progress.h"
 #include "reflection/gl/SoftwareRenderer.h"
@@ -127,6 +128,7 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
     std::vector<CarsRow> rows;
     const OffscreenTarget target(options.resolution);
     MirrorMask mirrors;
+    RayTracer rays(scene.city, scene.models);
     Progress progress("frames", options.cars.size() * (options.frames + options.warmUp), options.quiet);
     for (const std::uint32_t cars : options.cars) {
         Stage stage = setStage(scene, renderer, cars, options);
@@ -161,6 +163,8 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         if (options.mapsOn == MapsOn::gpu ||
             (options.mapsOn == MapsOn::automatic && !reflection::softwareRenderer()))
             add("mem gpu", ReflectionMethod::mem, MemVariant::ours, MapsOn::gpu);
+        add("raytrace", ReflectionMethod::raytrace, MemVariant::ours);
+        methods.back().engine->useRayTracer(&rays, [&] { return renderer.sunMap(); });
         add("rerender", ReflectionMethod::rerender, MemVariant::ours);
 
         Cast cast(cars);
@@ -186,7 +190,8 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
                     const std::vector<SeenVehicle> seen = seenIn(renderer, stage.view);
                     visible = static_cast<std::uint32_t>(seen.size());
                     const ReflectionPlan& plan = method.engine->update(picture, seen, renderer);
-                    reflections = {method.engine->textures(), plan.slots};
+                    reflections = {method.engine->textures(), plan.slots,
+                                   method.engine->mirroredIn(stage.view)};
                 }
                 renderer.drawView(stage.view, reflections, target.framebuffer());
                 finishDrawing();

@@ -43,8 +43,8 @@ struct CarsRow {
 };
 
 /// All reflection methods on the same frames, interleaved frame by frame: `none static blend box mem-paper
-/// mem rerender`. The camera looks down a street; traffic is put before it until that many cars are on
-/// screen, and cars off screen or beyond the number are taken away. `none` is the same frame with plain
+/// mem raytrace rerender`. The camera looks down a street; traffic is put before it until that many cars are
+/// on screen, and cars off screen or beyond the number are taken away. `none` is the same frame with plain
 /// paint, drawn as fast as the renderer can.
 std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections& prepared,
                                   SceneRenderer& renderer, const CarsBenchOptions& options);

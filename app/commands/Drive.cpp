@@ -33,19 +33,28 @@ bool Drive::reflectIn(const Lighting& lighting, const CarryOn& carryOn) {
     renderer_->prepare(empty);
     PreparationOptions preparation = preparation_;
     preparation.carryOn = carryOn;
+    preparation.maps = readsReferenceMaps(settings_.method);
     const Stopwatch watch;
     PreparedReflections prepared = prepareReflections(scene_->city, lighting, *renderer_, preparation);
     if (!prepared.complete) return false;
-    spdlog::info(
-        "{} reference maps see {:.1f}% of what can be seen from the lanes ({} from the cache, {} drawn, "
-        "{:.1f} s)",
-        prepared.maps.size(), 100 * prepared.coverage, prepared.loaded, prepared.baked,
-        watch.elapsed() / 1000);
+    if (preparation.maps)
+        spdlog::info(
+            "{} reference maps see {:.1f}% of what can be seen from the lanes ({} from the cache, {} drawn, "
+            "{:.1f} s)",
+            prepared.maps.size(), 100 * prepared.coverage, prepared.loaded, prepared.baked,
+            watch.elapsed() / 1000);
     engine_.reset();  // before the maps that it reads
     prepared_ = std::move(prepared);
     engine_ = std::make_unique<ReflectionEngine>(*prepared_.tracer, prepared_.maps, scene_->models,
                                                  reflectionSettings());
+    lendRays();
     return true;
+}
+
+void Drive::lendRays() {
+    if (settings_.method != ReflectionMethod::raytrace || !engine_) return;
+    if (!rays_) rays_ = std::make_unique<RayTracer>(scene_->city, scene_->models);
+    engine_->useRayTracer(rays_.get(), [this] { return renderer_->sunMap(); });
 }
 
 ReflectionSettings Drive::reflectionSettings() const {
@@ -92,7 +101,7 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
         for (const auto& visible : renderer_->visibleVehicles(view))
             seen.push_back({visible.index, visible.diameterPixels});
         const ReflectionPlan& plan = engine_->update(frame_, seen, *renderer_);
-        reflections_ = {engine_->textures(), plan.slots};
+        reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
         stats.reflectionMs = reflecting.elapsed();
         stats.reflections = engine_->counters();
     }
@@ -116,16 +125,20 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn) {
         relit ? lightingAt(wanted.hour, scene_->city.frame ? scene_->city.frame->latitude() : 50) : lighting_;
     const bool reflects = wanted.method != ReflectionMethod::none;
     bool finished = true;
-    if (reflects && (!engine_ || relit)) finished = reflectIn(lighting, carryOn);
+    const bool mapsMissing = readsReferenceMaps(wanted.method) && prepared_.maps.empty();
+    if (reflects && (!engine_ || relit || mapsMissing)) finished = reflectIn(lighting, carryOn);
     if (finished) {
         lighting_ = lighting;
         // Maps of another light are of no use later.
         if (!reflects && relit) engine_.reset();
     } else {
         settings_.hour = old.hour;
-        settings_.method = engine_ ? wanted.method : ReflectionMethod::none;
+        settings_.method = engine_ && !mapsMissing ? wanted.method : old.method;
     }
-    if (engine_ && settings_.method != ReflectionMethod::none) engine_->configure(reflectionSettings());
+    if (engine_ && settings_.method != ReflectionMethod::none) {
+        engine_->configure(reflectionSettings());
+        lendRays();
+    }
     return finished;
 }
 

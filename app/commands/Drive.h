@@ -8,6 +8,7 @@
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/DriveSettings.h"
 #include "app/frame/ReflectionEngine.h"
+#include "app/raytrace/RayTracer.h"
 #include "app/render/SceneRenderer.h"
 
 namespace app {
@@ -51,6 +52,7 @@ class Drive {
   private:
     RenderOptions renderOptions() const;
     ReflectionSettings reflectionSettings() const;
+    void lendRays();
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
     bool reflectIn(const Lighting& lighting, const CarryOn& carryOn);
 
@@ -63,6 +65,7 @@ class Drive {
     vehicles::Traffic traffic_;
     std::unique_ptr<SceneRenderer> renderer_;
     Lighting lighting_;
+    std::unique_ptr<RayTracer> rays_;  ///< made when first needed
     PreparedReflections prepared_;
     std::unique_ptr<ReflectionEngine> engine_;
     VehicleReflections reflections_;

@@ -127,6 +127,7 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
     PreparedReflections prepared;
     prepared.field = std::make_unique<city::Heightfield>(city::cityHeightfield(city, options.cell));
     prepared.tracer = std::make_unique<reflection::GridTracer>(*prepared.field);
+    if (!options.maps) return prepared;
 
     const reflection::ReferenceMapStore store = storeOf(city, lighting, options);
     prepared.folder = store.folder();

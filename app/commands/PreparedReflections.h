@@ -27,6 +27,7 @@ struct PreparationOptions {
     int supersampling = 2;
     reflection::PlacementOptions placement;
     bool useCache = true;
+    bool maps = true;  ///< false: heightfield and tracer alone
     /// A cache that cannot be written is an error; otherwise it is said, and the maps are drawn for this run.
     bool cacheIsPurpose = false;
     std::filesystem::path cache;  ///< empty: the user's cache folder

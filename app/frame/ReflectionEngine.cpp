@@ -13,8 +13,10 @@
 
 #include "app/frame/SkyMaps.h"
 #include "app/frame/VehicleShading.h"
+#include "app/raytrace/RayTracer.h"
 #include "reflection/gl/LocalMapAtlas.h"
 #include "reflection/gl/LocalMapPass.h"
+#include "reflection/gl/ScreenLight.h"
 #include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/local_map/MovingObjects.h"
 #include "reflection/local_map/PackedMips.h"
@@ -133,6 +135,15 @@ struct ReflectionEngine::Impl {
     void gatherNeighbours(const FrameScene& scene, const MapJob& job, int faceSize,
                           std::vector<reflection::MovingObject>& out);
     void buildFixedMap();
+
+    RayTracer* rayTracer = nullptr;
+    std::function<std::shared_ptr<const SunMap>()> sunMap;
+    Lighting raysLighting;
+    bool sunKnown = false;
+    std::vector<std::uint32_t> mirrors;  ///< vehicles that were seen
+    MirroredLight mirrored;
+    reflection::ScreenLight screen;
+    void prepareRays(const FrameScene& scene, std::span<const SeenVehicle> seen);
 };
 
 ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer,
@@ -306,8 +317,13 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     const auto start = std::chrono::steady_clock::now();
     Impl& engine = *impl_;
     engine.counters.rays = 0;
+    engine.counters.mirrorPixels = 0;
     if (engine.settings.method == ReflectionMethod::none) {
         engine.plan = {};
+    } else if (engine.settings.method == ReflectionMethod::raytrace) {
+        engine.plan = {};
+        engine.plan.visible = static_cast<std::uint32_t>(seen.size());
+        engine.prepareRays(scene, seen);
     } else if (engine.settings.method == ReflectionMethod::fixed) {
         engine.plan = {};
         engine.plan.visible = static_cast<std::uint32_t>(seen.size());
@@ -342,6 +358,41 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
     engine.counters.milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return engine.plan;
+}
+
+void ReflectionEngine::Impl::prepareRays(const FrameScene& scene, std::span<const SeenVehicle> seen) {
+    mirrors.clear();
+    if (rayTracer == nullptr || seen.empty()) return;
+    for (const SeenVehicle& vehicle : seen) mirrors.push_back(vehicle.index);
+    if (!sunKnown || !(raysLighting == scene.lighting)) {
+        rayTracer->useSunMap(sunMap ? sunMap() : nullptr);
+        raysLighting = scene.lighting;
+        sunKnown = true;
+    }
+    rayTracer->prepare(scene);
+}
+
+void ReflectionEngine::useRayTracer(RayTracer* tracer,
+                                    std::function<std::shared_ptr<const SunMap>()> sunMap) {
+    impl_->rayTracer = tracer;
+    impl_->sunMap = std::move(sunMap);
+    impl_->sunKnown = false;
+}
+
+std::uint32_t ReflectionEngine::mirroredIn(const View& view) {
+    Impl& engine = *impl_;
+    if (engine.settings.method != ReflectionMethod::raytrace || engine.rayTracer == nullptr ||
+        engine.mirrors.empty())
+        return 0;
+    const auto start = std::chrono::steady_clock::now();
+    engine.rayTracer->mirrored(view, engine.mirrors, {}, engine.mirrored);
+    engine.screen.upload(engine.mirrored.radiance, engine.mirrored.size, engine.mirrored.low,
+                         engine.mirrored.high);
+    engine.counters.rays += engine.mirrored.rays;
+    engine.counters.mirrorPixels += engine.mirrored.pixels;
+    engine.counters.milliseconds +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return engine.screen.name();
 }
 
 std::vector<reflection::LocalMapMesh::Quad> ReflectionEngine::meshOf(const glm::dvec3& centre, int face,

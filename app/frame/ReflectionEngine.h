@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include "app/frame/FrameScene.h"
 #include "app/frame/ReflectionMethod.h"
 #include "app/frame/ReflectionPlan.h"
+#include "app/frame/SunMap.h"
 #include "reflection/gl/LocalMapTextures.h"
 #include "reflection/gl/SceneDrawer.h"
 #include "reflection/local_map/LocalMapBuilder.h"
@@ -18,6 +20,8 @@
 #include "vehicles/models/VehicleModel.h"
 
 namespace app {
+
+class RayTracer;
 
 struct ReflectionSettings {
     ReflectionMethod method = ReflectionMethod::mem;
@@ -40,6 +44,7 @@ std::size_t candidateCount(const ReflectionSettings& settings);
 struct ReflectionCounters {
     std::uint32_t visible = 0, rebuilt = 0, fresh = 0, shared = 0, postponed = 0;
     std::uint64_t texels = 0, rays = 0;
+    std::uint64_t mirrorPixels = 0;        ///< traced, with `raytrace`
     std::size_t localMapBytes = 0;         ///< on the GPU, skies for those that it builds included
     std::size_t referenceMapBytes = 0;     ///< in main memory
     std::size_t referenceMapGpuBytes = 0;  ///< on the GPU; 0 where local maps are made on the processor
@@ -66,6 +71,13 @@ class ReflectionEngine {
     /// Plans and executes one frame. `drawer` must be prepared with the same scene.
     const ReflectionPlan& update(const FrameScene& scene, std::span<const SeenVehicle> seen,
                                  reflection::SceneDrawer& drawer);
+
+    /// What the method `raytrace` traces with, kept and prepared by `update`; null: plain paint. `sunMap` is
+    /// asked for the rasteriser's shadows when the light is new, with the drawer prepared.
+    void useRayTracer(RayTracer* tracer, std::function<std::shared_ptr<const SunMap>()> sunMap);
+    /// For `raytrace`: traces what the vehicles last seen mirror in a view of the last frame, as the GL name
+    /// of VehicleReflections::mirrored; good until the next call. 0 with every other method.
+    std::uint32_t mirroredIn(const View& view);
 
     reflection::LocalMapTextures textures() const;
     const ReflectionCounters& counters() const;

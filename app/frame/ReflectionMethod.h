@@ -16,9 +16,16 @@ enum class ReflectionMethod : std::uint8_t {
     box,       ///< parallax-corrected by a street-aligned box
     mem,       ///< reference maps + heightfield tracing
     rerender,  ///< six faces per car
+    raytrace,  ///< an exact mirror ray for each pixel of a car, by Embree
 };
-inline constexpr std::array<std::string_view, 6> reflectionMethodNames{"none", "static", "blend",
-                                                                       "box",  "mem",    "rerender"};
+inline constexpr std::array<std::string_view, 7> reflectionMethodNames{"none", "static",   "blend",   "box",
+                                                                       "mem",  "rerender", "raytrace"};
+
+/// Whether a method reads reference maps.
+inline constexpr bool readsReferenceMaps(ReflectionMethod method) {
+    return method == ReflectionMethod::fixed || method == ReflectionMethod::blend ||
+           method == ReflectionMethod::box || method == ReflectionMethod::mem;
+}
 
 /// Which form of `mem`.
 enum class MemVariant : std::uint8_t {

@@ -69,6 +69,7 @@ struct RayTracer::Impl {
     struct Scratch {
         std::vector<reflection::TracedRay> rays;
         std::vector<reflection::TracedHit> hits;
+        std::vector<glm::ivec2> pixels;
         std::vector<MirrorPixel> mirrors;
         std::vector<glm::vec3> light;
         MirrorPixels gatherer;
@@ -83,6 +84,7 @@ struct RayTracer::Impl {
     std::shared_ptr<const SunMap> sunMap;
     TextureFilter filter = TextureFilter::standard;
     int height = 0;
+    std::vector<unsigned char> known;  ///< pixels of `mirrored` that show a vehicle; valid within its tiles
     mutable tbb::enumerable_thread_specific<Scratch> scratch;
 };
 
@@ -240,10 +242,23 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
 MirroredLight RayTracer::mirrored(const View& view, std::span<const std::uint32_t> chosen,
                                   const TraceOptions& options) const {
     MirroredLight light;
-    if (view.size.x <= 0 || view.size.y <= 0) return light;
-    light.size = view.size;
+    mirrored(view, chosen, options, light);
+    return light;
+}
+
+void RayTracer::mirrored(const View& view, std::span<const std::uint32_t> chosen, const TraceOptions& options,
+                         MirroredLight& light) const {
+    light.low = light.high = glm::ivec2(0);
+    light.pixels = light.rays = 0;
+    if (view.size.x <= 0 || view.size.y <= 0) {
+        light = {};
+        return;
+    }
     const auto width = static_cast<std::size_t>(view.size.x);
-    light.radiance.assign(width * static_cast<std::size_t>(view.size.y), glm::vec3(0));
+    if (light.size != view.size) {
+        light.size = view.size;
+        light.radiance.assign(width * static_cast<std::size_t>(view.size.y), glm::vec3(0));
+    }
     Impl& my = *impl_;
     const DetailRule detail = DetailRule::of(view);
     RayScene seen(my.meshes);
@@ -252,21 +267,27 @@ MirroredLight RayTracer::mirrored(const View& view, std::span<const std::uint32_
     const RayScene around = my.mirrorScene(detail, 0xffffffffu);
     const ViewRays rays(view);
     const VehicleTiles tiles(my.frame, chosen, my.meshes, view);
-    std::vector<unsigned char> known(light.radiance.size());
-    std::atomic<std::uint64_t> count{0};
+    if (tiles.size() == 0) return;
+    std::vector<unsigned char>& known = my.known;
+    known.resize(light.radiance.size());
+    std::atomic<std::uint64_t> rayCount{0}, pixelCount{0};
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
         Impl::Scratch& scratch = my.scratch.local();
         scratch.rays.clear();
         scratch.mirrors.clear();
         const VehicleTiles::Tile tile = tiles[t];
         // Packets are blocks of four by two pixels.
-        std::vector<glm::ivec2> pixels;
+        std::vector<glm::ivec2>& pixels = scratch.pixels;
+        pixels.clear();
         for (int y = tile.low.y; y < tile.high.y; y += 2)
             for (int x = tile.low.x; x < tile.high.x; x += 4)
                 for (int k = 0; k < 8; ++k) {
                     const glm::ivec2 p(x + (k & 3), y + (k >> 2));
                     if (p.x >= tile.high.x || p.y >= tile.high.y) continue;
                     pixels.push_back(p);
+                    known[static_cast<std::size_t>(p.y) * width + static_cast<std::size_t>(p.x)] = 0;
+                    light.radiance[static_cast<std::size_t>(p.y) * width + static_cast<std::size_t>(p.x)] =
+                        glm::vec3(0);
                     const glm::vec3 through = rays.through(glm::vec2(p) + 0.5f);
                     const float nearPlane = glm::length(through);
                     scratch.rays.push_back(
@@ -281,7 +302,9 @@ MirroredLight RayTracer::mirrored(const View& view, std::span<const std::uint32_
                                        glm::vec2(scratch.hits[i].u, scratch.hits[i].v)});
         }
         scratch.light.resize(scratch.mirrors.size());
-        count += scratch.gatherer.gather(my.pathsIn(around), rays, scratch.mirrors, options, scratch.light);
+        pixelCount += scratch.mirrors.size();
+        rayCount +=
+            scratch.gatherer.gather(my.pathsIn(around), rays, scratch.mirrors, options, scratch.light);
         for (std::size_t i = 0; i < scratch.mirrors.size(); ++i) {
             const glm::ivec2 p = scratch.mirrors[i].pixel;
             const std::size_t index = static_cast<std::size_t>(p.y) * width + static_cast<std::size_t>(p.x);
@@ -289,9 +312,14 @@ MirroredLight RayTracer::mirrored(const View& view, std::span<const std::uint32_
             known[index] = 1;
         }
     });
-    light.rays = count;
+    light.rays = rayCount;
+    light.pixels = pixelCount;
     tiles.fillOutlines(light, known);
-    return light;
+    light.low = view.size;
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        light.low = glm::min(light.low, tiles[t].low);
+        light.high = glm::max(light.high, tiles[t].high);
+    }
 }
 
 reflection::ReferenceMap RayTracer::environmentMap(const glm::dvec3& centre, int faceSize,

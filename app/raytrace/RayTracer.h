@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/frame/FrameScene.h"
+#include "app/frame/MirroredLight.h"
 #include "app/frame/SunMap.h"
 #include "app/raytrace/PatternSampler.h"
 #include "city/model/CityModel.h"
@@ -52,15 +53,6 @@ struct TracedPicture {
     std::vector<glm::vec3> display(float exposure) const;
 };
 
-/// The light that each pixel's vehicle mirrors: radiance that arrives from the mirrored direction, before
-/// Fresnel's factor, top row first. Drawn by SceneRenderer (VehicleReflections::mirrored), so that two
-/// pictures with different mirrored light differ in their reflections and in nothing else.
-struct MirroredLight {
-    glm::ivec2 size{0};
-    std::vector<glm::vec3> radiance;  ///< where no vehicle is near: 0
-    std::uint64_t rays = 0;           ///< mirror rays and rays from mirror to mirror
-};
-
 /// The scene of a frame as rays see it: the same city, materials, vehicles, sky and light as the rasteriser's
 /// (SceneRenderer), shaded by the processor's twins of its shaders. Needs no OpenGL. What is seen directly
 /// has the rasteriser's levels of detail; what is seen in a mirror is as fine as it gets.
@@ -98,6 +90,10 @@ class RayTracer {
     /// that may be seen; others are not looked for.
     MirroredLight mirrored(const View& view, std::span<const std::uint32_t> chosen,
                            const TraceOptions& options) const;
+    /// The same into a picture that is used again from frame to frame: pixels far from vehicles keep what
+    /// they held.
+    void mirrored(const View& view, std::span<const std::uint32_t> chosen, const TraceOptions& options,
+                  MirroredLight& light) const;
 
     /// What is seen from a point, the vehicle of this id left out; `samples` rays a texel, stratified. Depth
     /// is the distance in metres, +infinity for sky; faces in CubeMapping's order.

@@ -13,8 +13,8 @@ namespace app {
 
 VehicleTiles::VehicleTiles(const FrameScene& frame, std::span<const std::uint32_t> chosen,
                            const RayMeshes& meshes, const View& view) {
-    const glm::ivec2 grid = (view.size + side - 1) / side;
-    std::vector<unsigned char> marked(static_cast<std::size_t>(grid.x) * static_cast<std::size_t>(grid.y));
+    grid_ = (view.size + side - 1) / side;
+    marked_.resize(static_cast<std::size_t>(grid_.x) * static_cast<std::size_t>(grid_.y));
     const glm::mat4 clipFromRelative = view.clipFromView * view.viewFromWorld;
     for (const std::uint32_t index : chosen) {
         const vehicles::VehiclePose& pose = frame.vehicles[index];
@@ -42,13 +42,12 @@ VehicleTiles::VehicleTiles(const FrameScene& frame, std::span<const std::uint32_
             glm::ivec2(glm::floor(glm::min(high + 1.0f, glm::vec2(view.size) - 1.0f))) / side;
         for (int y = first.y; y <= last.y && high.y >= 0; ++y)
             for (int x = first.x; x <= last.x && high.x >= 0; ++x)
-                marked[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.x) +
-                       static_cast<std::size_t>(x)] = 1;
+                marked_[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.x) +
+                        static_cast<std::size_t>(x)] = 1;
     }
-    for (int y = 0; y < grid.y; ++y)
-        for (int x = 0; x < grid.x; ++x)
-            if (marked[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.x) +
-                       static_cast<std::size_t>(x)] != 0)
+    for (int y = 0; y < grid_.y; ++y)
+        for (int x = 0; x < grid_.x; ++x)
+            if (covers(x * side, y * side))
                 tiles_.push_back(
                     {glm::ivec2(x, y) * side, glm::min(glm::ivec2(x + 1, y + 1) * side, view.size)});
 }
@@ -67,7 +66,7 @@ void VehicleTiles::fillOutlines(MirroredLight& light, std::span<const unsigned c
                 float count = 0;
                 for (int k = 0; k < 9; ++k) {
                     const int nx = x + k % 3 - 1, ny = y + k / 3 - 1;
-                    if (nx < 0 || ny < 0 || nx >= light.size.x || ny >= light.size.y ||
+                    if (nx < 0 || ny < 0 || nx >= light.size.x || ny >= light.size.y || !covers(nx, ny) ||
                         known[index(nx, ny)] == 0)
                         continue;
                     sum += light.radiance[index(nx, ny)];

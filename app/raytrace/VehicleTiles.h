@@ -24,11 +24,18 @@ class VehicleTiles {
     std::size_t size() const { return tiles_.size(); }
     const Tile& operator[](std::size_t i) const { return tiles_[i]; }
 
-    /// Pixels next to known ones take their light: where the rasteriser's outlines differ by a rounding, or
-    /// a pixel is covered in part.
+    /// `known` is asked of pixels within tiles alone. Pixels next to known ones take their light: where the
+    /// rasteriser's outlines differ by a rounding, or a pixel is covered in part.
     void fillOutlines(MirroredLight& light, std::span<const unsigned char> known) const;
 
   private:
+    bool covers(int x, int y) const {
+        return marked_[static_cast<std::size_t>(y / side) * static_cast<std::size_t>(grid_.x) +
+                       static_cast<std::size_t>(x / side)] != 0;
+    }
+
+    glm::ivec2 grid_{0};
+    std::vector<unsigned char> marked_;
     std::vector<Tile> tiles_;
 };
 

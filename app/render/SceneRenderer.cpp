@@ -194,7 +194,7 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     for (const VisibleVehicle& v : my.visible(pass)) my.chosen.push_back(v.index);
     const VehiclePass::Counts vehicles =
         my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
-                            {&reflections.textures, reflections.slots}, levelTolerance);
+                            {&reflections.textures, reflections.slots, reflections.mirrored}, levelTolerance);
     const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
     const std::uint32_t lampCalls = my.signalLamps.draw(pass, PassTarget::view, my.signalColours);
     const std::uint32_t shadowCalls =
@@ -243,7 +243,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
 
 std::shared_ptr<const SunMap> SceneRenderer::sunMap() {
     impl_->updateShadow();
-    return impl_->options.shadows ? impl_->shadow.read() : nullptr;
+    return impl_->options.shadows ? impl_->shadow.read() : std::make_shared<const SunMap>();
 }
 
 const RenderCounters& SceneRenderer::counters() const {

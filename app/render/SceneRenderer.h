@@ -34,6 +34,9 @@ struct RenderCounters {
 struct VehicleReflections {
     reflection::LocalMapTextures textures;
     std::vector<reflection::LocalMapSlot> slots;  ///< one per FrameScene::vehicles; empty: all plain paint
+    /// GL name of a ScreenLight's texture for this view: what each pixel mirrors, in place of all maps. 0:
+    /// none.
+    std::uint32_t mirrored = 0;
 };
 
 /// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models;
@@ -55,7 +58,7 @@ class SceneRenderer final : public reflection::SceneDrawer {
                   const reflection::CubeContent& content) override;
 
     /// The shadows of the prepared scene's sun, read back: for rays that are to see the same. Waits for the
-    /// GPU; up to 128 MiB. Null without shadows.
+    /// GPU; up to 128 MiB. Empty without shadows.
     std::shared_ptr<const SunMap> sunMap();
 
     const RenderCounters& counters() const;  ///< of the last drawView

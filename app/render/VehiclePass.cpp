@@ -25,10 +25,11 @@ VehiclePass::VehiclePass(std::span<const vehicles::VehicleModel> models) : geome
     // in software.
     mapSampler_ = reflection::gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
     for (std::size_t target = 0; target < 2; ++target) {
-        for (std::size_t reflective = 0; reflective < 2; ++reflective) {
+        for (std::size_t mirror = 0; mirror < 3; ++mirror) {
             std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
-            if (reflective != 0) defines.emplace_back("REFLECTIVE");
-            programs_[target][reflective] =
+            if (mirror == 1) defines.emplace_back("REFLECTIVE");
+            if (mirror == 2) defines.emplace_back("SCREEN");
+            programs_[target][mirror] =
                 reflection::gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
         }
     }
@@ -76,7 +77,8 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
         if (reflections.textures != nullptr && index < reflections.slots.size())
             slot = reflections.slots[index];
         const auto sizeClass = static_cast<std::size_t>(std::max<int>(slot.sizeClass, 0));
-        const bool reflective = slot.valid() && sizeClass < reflections.textures->cubeArrays.size() &&
+        const bool reflective = slot.valid() && reflections.mirrored == 0 &&
+                                sizeClass < reflections.textures->cubeArrays.size() &&
                                 reflections.textures->cubeArrays[sizeClass] != 0;
         const std::int32_t group = reflective ? static_cast<std::int32_t>(sizeClass) : -1;
         const auto layer = static_cast<float>(slot.layer);
@@ -117,7 +119,9 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
         const Piece& piece = pieces_[order_[first]];
         if (piece.sizeClass != used) {
             used = piece.sizeClass;
-            programs_[static_cast<std::size_t>(target)][used >= 0 ? 1 : 0].use();
+            const std::size_t mirror = used >= 0 ? 1 : reflections.mirrored != 0 ? 2 : 0;
+            programs_[static_cast<std::size_t>(target)][mirror].use();
+            if (mirror == 2) glBindTextureUnit(3, reflections.mirrored);
             if (used >= 0)
                 glBindTextureUnit(2, reflections.textures->cubeArrays[static_cast<std::size_t>(used)]);
         }

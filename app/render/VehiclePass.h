@@ -22,6 +22,7 @@ class VehiclePass {
     struct Reflections {
         const reflection::LocalMapTextures* textures = nullptr;
         std::span<const reflection::LocalMapSlot> slots;  ///< one per pose, or empty
+        std::uint32_t mirrored = 0;  ///< GL name of a ScreenLight's texture, in place of all maps; 0: none
     };
     struct Counts {
         std::uint32_t drawCalls = 0;
@@ -49,7 +50,7 @@ class VehiclePass {
 
     VehicleGeometry geometry_;
     reflection::gl::Sampler mapSampler_;
-    std::array<std::array<reflection::gl::Program, 2>, 2> programs_;  ///< [target][reflective]
+    std::array<std::array<reflection::gl::Program, 3>, 2> programs_;  ///< [target][plain, maps, screen]
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> order_;
     std::vector<VehicleInstance> instances_;

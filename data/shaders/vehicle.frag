@@ -10,6 +10,9 @@ layout(location = 3) in vec3 coat;
 layout(location = 4) flat in float mapLayer;
 layout(binding = 2) uniform samplerCubeArray localMap;
 #endif
+#ifdef SCREEN
+layout(binding = 3) uniform sampler2D screenLight;  // what this pixel mirrors
+#endif
 
 void main() {
     vec3 towardsEye = -normalize(relative);
@@ -19,7 +22,9 @@ void main() {
     float grazing2 = grazing * grazing;
     float fresnel = coat.x + (1.0 - coat.x) * coat.y * grazing2 * grazing2 * grazing;  // Schlick
     vec3 reflected = 2.0 * dot(n, towardsEye) * n - towardsEye;
-#ifdef REFLECTIVE
+#if defined SCREEN
+    vec3 mirrored = texelFetch(screenLight, ivec2(gl_FragCoord.xy), 0).rgb;
+#elif defined REFLECTIVE
     // The level whose texels are as wide as what the pixel reflects: derivatives of the reflected direction, not of face coordinates, which
     // jump at edges. A face of n texels spans two units.
     vec3 across = max(abs(dFdx(reflected)), abs(dFdy(reflected)));
