@@ -93,8 +93,11 @@ TraceResult walk(const TracedGrid& grid, const city::Ray& ray, float tMax) {
         if (!hn::AllTrue(p, crossesOrBefore)) return carefulWalk(grid, ray, tMax);
     }
     const double inverseRise = 1 / rise;
-    // Nothing is hit after tLast. The slack is for the rounding of a hit's t to float.
-    const double limit = static_cast<double>(tMax) * (1 + 1e-6) + 1e-40;
+    // Nothing is hit after tLast. The slack is for the rounding of a hit's t to float, and for that of the
+    // walk's own t: b / s is less than 2^-19 / (s + s' + |r|), see LeapWalk.h.
+    const VP inverses = hn::Abs(inverse);
+    const double late = 0x1p-19 * hn::GetLane(hn::Min(inverses, hn::Reverse(p, inverses)));
+    const double limit = static_cast<double>(tMax) * (1 + 1e-6) + (late + 1e-40);
     const double tLast = rise < 0 ? limit : std::min((scale.top - startLevel) * inverseRise, limit);
 
     const MP backwards = hn::Lt(direction, zero);

@@ -392,6 +392,22 @@ TEST(GridTracerTest, limitsAreKeptAtSubnormalParameters) {
     }
 }
 
+TEST(GridTracerTest, limitsAreKeptNearerThanCoordinatesInCellsCanTell) {
+    // A quarter of a millionth of a millionth of a cell before a border, whose double is not the start's
+    // float.
+    city::Heightfield field(30, 26, 0.05f, {0.3, -0.7});
+    for (float& h : field.cells()) h = 0;
+    field.set(17, 14, infinity);
+    const GridTracer tracer(field);
+    const city::Ray ray{{0x1.2ca328p+0f, 0x1.666666p-27f, 0x1.0464d8p-3f},
+                        {0, 0x1.239448p-2f, -0x1.81ad2ep-1f}};
+    const TraceResult hit = tracer.trace(ray);
+    ASSERT_EQ(hit.cell, glm::ivec2(17, 14));
+    ASSERT_LT(hit.t, 1e-15f);
+    EXPECT_EQ(tracer.trace(ray, hit.t).status, TraceStatus::hit);
+    EXPECT_EQ(tracer.trace(ray, std::nextafter(hit.t, 0.0f)).status, TraceStatus::miss);
+}
+
 TEST(GridTracerTest, aStartThatRoundsOntoTheBorderAlongWhichItRunsKeepsItsRow) {
     city::Heightfield field(21, 9, 100, {-1000, -900});
     for (float& h : field.cells()) h = 0;
