@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -111,7 +112,8 @@ void LocalMapBuilder::fillAligned(int faceSize, int texelsPerUnit) {
 void LocalMapBuilder::fillReciprocal(int faceSize) {
     reciprocal_.resize(static_cast<std::size_t>(faceSize) * static_cast<std::size_t>(faceSize));
     const int perUnit = faceSize / mesh_.latticeSize();
-    if (perUnit * mesh_.latticeSize() == faceSize && mesh_.greatestQuad() * perUnit <= 16) {
+    if (perUnit * mesh_.latticeSize() == faceSize && mesh_.greatestQuad() * perUnit <= 16 &&
+        std::has_single_bit(static_cast<unsigned>(perUnit))) {
         fillAligned(faceSize, perUnit);
         return;
     }
