@@ -100,36 +100,45 @@ void checkQuads(const LocalMapMesh& mesh, Tally& tally) {
     tally.budget.failures += used > 1 ? 1 : 0;
 }
 
+/// How far a texel is from what a quad says of it, as a share of the bound. u, v: its middle in units of
+/// 1 / `unit` of the lattice's.
+double shareOfBound(const LocalMapMesh::Quad& q, double got, long u, long v, long unit) {
+    double want = static_cast<double>(q.centre);
+    if (q.smooth) {
+        const double s = (static_cast<double>(u) / static_cast<double>(unit) - q.x) / q.size;
+        const double t = (static_cast<double>(v) / static_cast<double>(unit) - q.y) / q.size;
+        const auto c = [&](int k) { return static_cast<double>(q.corner[k]); };
+        want = (1 - t) * ((1 - s) * c(0) + s * c(1)) + t * ((1 - s) * c(2) + s * c(3));
+    }
+    double scale = std::abs(want);
+    for (const float w : q.corner) scale = std::max(scale, static_cast<double>(w));
+    const double place = static_cast<double>(std::max(q.x, q.y)) / q.size + 1;
+    const double bound = scale * (8 + 2 * 3 * place) * 0x1p-24;
+    const double error = std::abs(got - want);
+    return error == 0 ? 0 : error / bound;
+}
+
 /// Every texel of the map comes from the quad in which its middle lies: none is left out between quads of
 /// different sizes.
 void checkTexels(const LocalMapMesh& mesh, const std::vector<float>& texels, int faceSize, Tally& tally) {
-    for (int y = 0; y < faceSize; ++y)
-        for (int x = 0; x < faceSize; ++x) {
-            // In lattice units, times 2 * faceSize: exact.
-            const long n = mesh.latticeSize(), u = (2L * x + 1) * n, v = (2L * y + 1) * n,
-                       unit = 2L * faceSize;
+    const long n = mesh.latticeSize(), unit = 2L * faceSize;
+    std::vector<std::uint32_t> quadOf(static_cast<std::size_t>(n * n));
+    for (std::uint32_t k = 0; k < mesh.quads().size(); ++k) {
+        const LocalMapMesh::Quad& q = mesh.quads()[k];
+        for (long y = q.y; y < q.y + q.size; ++y)
+            for (long x = q.x; x < q.x + q.size; ++x) quadOf[static_cast<std::size_t>(y * n + x)] = k;
+    }
+    for (long y = 0; y < faceSize; ++y)
+        for (long x = 0; x < faceSize; ++x) {
+            // In lattice units, times 2 * faceSize: exact. A middle on a border may go to either side.
+            const long u = (2 * x + 1) * n, v = (2 * y + 1) * n;
+            const auto got = static_cast<double>(texels[static_cast<std::size_t>(y * faceSize + x)]);
             double least = std::numeric_limits<double>::infinity();
-            const float got = texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(faceSize) +
-                                     static_cast<std::size_t>(x)];
-            // A middle on a border may go to either side.
-            for (const LocalMapMesh::Quad& q : mesh.quads()) {
-                if (u < q.x * unit || u > (q.x + q.size) * unit || v < q.y * unit ||
-                    v > (q.y + q.size) * unit)
-                    continue;
-                double want = static_cast<double>(q.centre);
-                if (q.smooth) {
-                    const double s = (static_cast<double>(u) / static_cast<double>(unit) - q.x) / q.size;
-                    const double t = (static_cast<double>(v) / static_cast<double>(unit) - q.y) / q.size;
-                    const auto c = [&](int k) { return static_cast<double>(q.corner[k]); };
-                    want = (1 - t) * ((1 - s) * c(0) + s * c(1)) + t * ((1 - s) * c(2) + s * c(3));
+            for (const long i : {(u - 1) / unit, u / unit})
+                for (const long j : {(v - 1) / unit, v / unit}) {
+                    const std::uint32_t k = quadOf[static_cast<std::size_t>(j * n + i)];
+                    least = std::min(least, shareOfBound(mesh.quads()[k], got, u, v, unit));
                 }
-                double scale = std::abs(want);
-                for (const float w : q.corner) scale = std::max(scale, static_cast<double>(w));
-                const double error = std::abs(static_cast<double>(got) - want);
-                const double place = static_cast<double>(std::max(q.x, q.y)) / q.size + 1;
-                const double bound = scale * (8 + 2 * 3 * place) * 0x1p-24;
-                least = std::min(least, error == 0 ? 0 : error / bound);
-            }
             ++tally.texels.tried;
             tally.texels.worst = std::max(tally.texels.worst, least);
             tally.texels.failures += !(least <= tally.texels.bound) ? 1 : 0;
@@ -157,7 +166,10 @@ std::vector<Row> tryMesh(const Options& options) {
             request.mesh.baseCells = 1 + random.below(20);
             request.mesh.depth = random.below(5);
             request.mesh.threshold = static_cast<float>(random.magnitude(1e-6, 1));
-            for (const int faceSize : {1 + random.below(200), 8 << random.below(5)})
+            // Any size, a power of two, and a multiple of the lattice: three ways of filling texels.
+            const int lattice = request.mesh.baseCells << request.mesh.depth;
+            const int multiple = lattice * (1 + random.below(std::max(1, 256 / lattice)));
+            for (const int faceSize : {1 + random.below(200), 8 << random.below(5), multiple})
                 for (int face = 0; face < 6; ++face) {
                     // A builder without a past: what is not written stays 0.
                     reflection::LocalMapBuilder builder;
