@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
-#include <optional>
-#include <set>
 
+#include "app/commands/CarsStage.h"
 #include "app/commands/MirrorMask.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
@@ -22,96 +19,6 @@
 namespace app {
 
 namespace {
-
-constexpr double fieldOfView = 60;
-
-/// A place to look down a street from, a bus driver's height above a lane.
-struct Lookout {
-    glm::dvec3 eye{0}, target{1, 0, 0};
-};
-
-std::vector<Lookout> lookouts(const city::CityModel& city) {
-    std::vector<Lookout> found;
-    for (const city::Lane& lane : city.roads.lanes) {
-        if (lane.kind != city::LaneKind::car || laneLength(lane) < 60) continue;
-        const glm::dvec3 a(lane.centreLine.front()), b(lane.centreLine.back());
-        found.push_back({a + glm::dvec3(0, 0, 5), b + glm::dvec3(0, 0, 0.5)});
-    }
-    return found;
-}
-
-/// Traffic with enough cars in view of the best of a few lookouts.
-struct Stage {
-    View view;
-    std::optional<vehicles::Traffic> traffic;
-    std::size_t visible = 0;
-};
-
-Stage setStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars,
-               const CarsBenchOptions& options) {
-    Stage best;
-    std::vector<Lookout> places = lookouts(scene.city);
-    constexpr std::size_t placesTried = 6;
-    const std::size_t stride = std::max<std::size_t>(1, places.size() / placesTried);
-    for (std::size_t p = 0; p < places.size() && best.visible < cars; p += stride) {
-        const View view =
-            lookAt(places[p].eye, places[p].target, glm::radians(fieldOfView), options.resolution);
-        for (const std::uint32_t wanted : {2 * cars, 4 * cars, 8 * cars}) {
-            vehicles::TrafficOptions traffic;
-            traffic.seed = options.seed;
-            traffic.cars = wanted;
-            const glm::dvec3 ahead = glm::normalize(places[p].target - places[p].eye);
-            traffic.focus = vehicles::Focus{glm::vec3(places[p].eye + 60.0 * ahead), 400};
-            vehicles::Traffic simulation(scene.city.roads, scene.kinds, traffic);
-            for (int step = 0; step < 120; ++step) simulation.step();
-            renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}));
-            const std::size_t visible = renderer.visibleVehicles(view).size();
-            const bool full = simulation.size() < wanted;
-            if (visible > best.visible) {
-                best.view = view;
-                best.visible = visible;
-                best.traffic.emplace(std::move(simulation));
-            }
-            if (best.visible >= cars || full) break;
-        }
-    }
-    return best;
-}
-
-std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, const View& view) {
-    std::vector<SeenVehicle> seen;
-    for (const auto& v : renderer.visibleVehicles(view)) seen.push_back({v.index, v.diameterPixels});
-    return seen;
-}
-
-/// A frame in which only so many vehicles are left, those largest on screen that were kept in the frame
-/// before first: nobody is swapped while he is still seen.
-class Cast {
-  public:
-    explicit Cast(std::uint32_t count) : count_(count) {}
-
-    void select(FrameScene& scene, SceneRenderer& renderer) {
-        renderer.prepare(scene);
-        std::vector<SeenVehicle> seen = seenIn(renderer, scene.views.front());
-        std::stable_sort(seen.begin(), seen.end(), [&](const SeenVehicle& a, const SeenVehicle& b) {
-            const bool keptA = kept_.contains(scene.vehicles[a.index].id),
-                       keptB = kept_.contains(scene.vehicles[b.index].id);
-            return keptA != keptB ? keptA : a.diameterPixels > b.diameterPixels;
-        });
-        seen.resize(std::min<std::size_t>(seen.size(), count_));
-        kept_.clear();
-        std::vector<vehicles::VehiclePose> stay;
-        for (const SeenVehicle& v : seen) {
-            kept_.insert(scene.vehicles[v.index].id);
-            stay.push_back(scene.vehicles[v.index]);
-        }
-        scene.vehicles = std::move(stay);
-    }
-
-  private:
-    std::uint32_t count_;
-    std::set<std::uint32_t> kept_;
-};
 
 struct MethodRun {
     std::string name;
@@ -131,7 +38,7 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
     RayTracer rays(scene.city, scene.models);
     Progress progress("frames", options.cars.size() * (options.frames + options.warmUp), options.quiet);
     for (const std::uint32_t cars : options.cars) {
-        Stage stage = setStage(scene, renderer, cars, options);
+        CarsStage stage = setCarsStage(scene, renderer, cars, options.seed, options.resolution);
         if (!stage.traffic) {
             spdlog::warn("the city has no street to look down; nothing was measured for {} cars", cars);
             continue;
@@ -173,7 +80,7 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
             for (double ahead = 0; ahead < options.frameStep; ahead += vehicles::TrafficOptions{}.step)
                 stage.traffic->step();
             FrameScene picture = assembleFrame(scene.city, *stage.traffic, scene.lighting, {stage.view});
-            cast.select(picture, renderer);
+            cast.select(picture, stage.view, renderer);
             const bool measured = frame >= options.warmUp;
 
             std::vector<Image8> images;
@@ -187,7 +94,7 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
                 renderer.prepare(picture);
                 VehicleReflections reflections;
                 if (method.engine->settings().method != ReflectionMethod::none) {
-                    const std::vector<SeenVehicle> seen = seenIn(renderer, stage.view);
+                    const std::vector<SeenVehicle> seen = seenIn(renderer, picture.views);
                     visible = static_cast<std::uint32_t>(seen.size());
                     const ReflectionPlan& plan = method.engine->update(picture, seen, renderer);
                     reflections = {method.engine->textures(), plan.slots,

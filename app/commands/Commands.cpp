@@ -3,8 +3,8 @@
 namespace app {
 
 std::vector<Command> allCommands() {
-    return {tourCommand(), bakeCommand(),      benchCommand(), exportCommand(),
-            infoCommand(), stabilityCommand(), truthCommand()};
+    return {tourCommand(),   bakeCommand(), benchCommand(),     compareCommand(),
+            exportCommand(), infoCommand(), stabilityCommand(), truthCommand()};
 }
 
 }  // namespace app

@@ -9,6 +9,7 @@ namespace app {
 Command tourCommand();
 Command bakeCommand();
 Command benchCommand();
+Command compareCommand();
 Command exportCommand();
 Command infoCommand();
 Command truthCommand();

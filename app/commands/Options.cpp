@@ -225,6 +225,10 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
         parser.add_option("--json", o.json, "write the results to this file")
             ->type_name("FILE")
             ->check(isPath());
+    if (groups & htmlOptions)
+        parser.add_option("--html", o.html, "write a page with charts, pictures and the table to this file")
+            ->type_name("FILE")
+            ->check(isPath());
     if (groups & stabilityOptions) {
         parser
             .add_option("--rays", o.rays,

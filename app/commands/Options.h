@@ -37,6 +37,7 @@ struct Options {
     glm::ivec2 resolution{1280, 720};  ///< pixels
     std::filesystem::path out = "out";
     std::optional<std::filesystem::path> json;
+    std::optional<std::filesystem::path> html;
     std::optional<double> seconds;
     std::optional<std::uint32_t> frames;
     std::uint32_t fps = 30;
@@ -73,6 +74,7 @@ enum OptionGroup : unsigned {
     exportOptions = 1u << 14,
     mapsOnOptions = 1u << 15,     ///< --maps-on --gpu-map-memory
     stabilityOptions = 1u << 16,  ///< --rays, and --seed without a city
+    htmlOptions = 1u << 17,       ///< --html
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

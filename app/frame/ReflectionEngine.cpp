@@ -57,9 +57,12 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
             break;
     }
     options.share = settings.shareMaps;
+    options.mapsInTurn = settings.mapsInTurn;
+    options.sizeClass = settings.sizeClass;
     // The paper rebuilds every visible vehicle's map every frame; re-rendering is the yardstick and does so
-    // too.
-    options.everyFrame = settings.everyFrame || settings.method == ReflectionMethod::rerender ||
+    // too, unless it is to take turns.
+    options.everyFrame = settings.everyFrame ||
+                         (settings.method == ReflectionMethod::rerender && settings.mapsInTurn == 0) ||
                          (settings.method == ReflectionMethod::mem && settings.variant == MemVariant::paper);
     return options;
 }

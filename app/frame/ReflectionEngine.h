@@ -27,9 +27,11 @@ struct ReflectionSettings {
     ReflectionMethod method = ReflectionMethod::mem;
     MemVariant variant = MemVariant::ours;
     Quality quality = Quality::medium;
-    bool everyFrame = false;     ///< rebuild every visible map every frame
-    bool vehiclesInMaps = true;  ///< other vehicles appear in each vehicle's map
-    bool shareMaps = true;       ///< small vehicles may show a neighbour's map
+    bool everyFrame = false;       ///< rebuild every visible map every frame
+    bool vehiclesInMaps = true;    ///< other vehicles appear in each vehicle's map
+    bool shareMaps = true;         ///< small vehicles may show a neighbour's map
+    std::uint32_t mapsInTurn = 0;  ///< see PlanOptions
+    int sizeClass = -1;            ///< see PlanOptions
     MapsOn mapsOn = MapsOn::automatic;
     std::size_t gpuMapBytes =
         std::size_t{512} << 20;  ///< for reference maps on the GPU at most; those in use take turns there

@@ -120,7 +120,9 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         Held& map = held_[pose.id];
         map.lastSeen = frame_;
         const int sizeClass =
-            sizeClassFor(vehicle.diameterPixels, options.texelsPerPixel, map.slot.sizeClass);
+            options.sizeClass >= 0
+                ? std::min(options.sizeClass, static_cast<int>(reflection::localMapFaceSizes.size()) - 1)
+                : sizeClassFor(vehicle.diameterPixels, options.texelsPerPixel, map.slot.sizeClass);
         const glm::dvec3 centre =
             pose.position +
             glm::dvec3(0, 0, pose.model < centreHeights.size() ? centreHeights[pose.model] : 0.8f);
@@ -135,7 +137,9 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
                           static_cast<float>(
                               reflection::localMapFaceSizes[static_cast<std::size_t>(map.slot.sizeClass)]);
         }
-        if (map.built && !options.everyFrame && pixels < options.errorThreshold) {
+        if (options.mapsInTurn > 0 && map.built)
+            pixels = static_cast<double>(frame_ - map.lastBuilt);  // its age stands for its error
+        else if (map.built && !options.everyFrame && pixels < options.errorThreshold) {
             ++plan.fresh;
             lenders.push_back(&map);
             continue;
@@ -155,9 +159,15 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         if (a.slot.sizeClass != b.slot.sizeClass) return a.slot.sizeClass < b.slot.sizeClass;
         return scene.vehicles[a.vehicle].id < scene.vehicles[b.vehicle].id;
     });
+    std::uint32_t inTurn = 0;
     for (MapJob& job : wanted) {
         Held& map = held_[scene.vehicles[job.vehicle].id];
-        if (options.share && !options.everyFrame) {
+        if (options.mapsInTurn > 0) {
+            if (map.built && inTurn++ >= options.mapsInTurn) {
+                ++plan.postponed;
+                continue;
+            }
+        } else if (options.share && !options.everyFrame) {
             const Held* lender = lenderFor(job, diameters[job.vehicle], options.errorThreshold, lenders);
             if (lender != nullptr) {
                 release(map.slot);
@@ -169,8 +179,8 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
             }
         }
         const std::uint64_t cost = texelsOf(job.slot.sizeClass);
-        const bool affordable =
-            plan.jobs.empty() || plan.texels + cost <= options.texelBudget || options.everyFrame;
+        const bool affordable = plan.jobs.empty() || plan.texels + cost <= options.texelBudget ||
+                                options.everyFrame || options.mapsInTurn > 0;
         if (!affordable && map.built) {
             ++plan.postponed;
             continue;
@@ -194,6 +204,7 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
         job.slot = map.slot;
         map.centre = job.centre;
         map.neighbourMotion = 0;
+        map.lastBuilt = frame_;
         map.built = true;
         lenders.push_back(&map);
         plan.texels += texelsOf(job.slot.sizeClass);

@@ -49,6 +49,10 @@ struct PlanOptions {
     /// a cube).
     int layersAtMost = 341;
     bool share = true;  ///< a vehicle may show a neighbour's map where that is within the threshold
+    /// Not 0: in turn, whatever their errors: vehicles without a map, and so many maps besides, the oldest
+    /// first. Budget and threshold do not matter then, and nothing is shared.
+    std::uint32_t mapsInTurn = 0;
+    int sizeClass = -1;  ///< not -1: of all maps, whatever the vehicles' sizes on screen
 };
 
 /// Decides which local maps are built when. Keeps what it planned before: a map's age is the distance that
@@ -78,6 +82,7 @@ class ReflectionPlanner {
         double neighbourMotion =
             0;  ///< metres that neighbours moved since the map was built, weighted by nearness
         std::uint64_t lastSeen = 0;
+        std::uint64_t lastBuilt = 0;
         bool built = false;
     };
     /// The map of least error on this vehicle among the lenders' that is below the threshold, or null.

@@ -1,0 +1,90 @@
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+
+#include "app/commands/Commands.h"
+#include "app/commands/CompareRun.h"
+#include "app/commands/PreparedScene.h"
+#include "app/commands/Version.h"
+#include "app/compare/ComparePage.h"
+#include "app/report/AsideFile.h"
+#include "app/report/Progress.h"
+#include "app/report/ResultFile.h"
+#include "app/report/Table.h"
+
+namespace app {
+
+namespace {
+
+void printRows(const std::vector<CompareRow>& rows) {
+    std::vector<std::vector<std::string>> table{{"method", "set", "cars", "views", "frame ms",
+                                                 "reflections ms", "FLIP", "to rerender", "PSNR dB",
+                                                 "flicker", "maps a frame", "front"}};
+    for (const CompareRow& row : rows)
+        table.push_back({row.point.title(), row.point.setting, std::to_string(row.cars), row.views,
+                         fixed(row.frame.median, 1), fixed(row.reflection.median, 2),
+                         fixed(row.againstTruth.flip, 4), fixed(row.againstRerender.flip, 4),
+                         fixed(row.againstTruth.psnr, 1), fixed(row.againstTruth.flicker, 5),
+                         fixed(row.mapsPerFrame, 1), row.onFront ? "*" : ""});
+    std::cout << formatTable(table) << "\n";
+    for (const FrontVerdict& v : frontVerdicts(rows))
+        if (v.points > 0)
+            std::cout << v.cars << " cars: mem's front is below " << v.other << " at " << v.below << " of "
+                      << v.points << " settings\n";
+}
+
+int run(const Options& options) {
+    PreparedScene stage(options);
+    ResultFile results("compare", std::string(programVersion), stage.context.renderer());
+    Comparison comparison;
+    CompareOptions settings;
+    settings.seed = options.seed;
+    settings.resolution = options.resolution;
+    settings.quiet = options.quiet;
+    settings.frameStep = 1.0 / options.fps;
+    settings.pictures = options.html.has_value();
+    if (!options.cars.empty()) settings.cars = options.cars;
+    if (const auto frames = options.frameCount()) settings.frames = *frames;
+    if (stage.reflections.complete)
+        comparison = runComparison(stage.scene, stage.reflections, stage.renderer, settings);
+
+    const std::vector<CompareRow>& rows = comparison.rows;
+    for (const CompareRow& row : rows) results.add(toJson(row, options.city));
+    if (!rows.empty()) printRows(rows);
+    if (options.json) results.write(*options.json, interrupted());
+    if (options.html && !rows.empty()) {
+        const nlohmann::ordered_json document = results.document(interrupted());
+        PageHead head;
+        head.city = options.city;
+        head.seed = options.seed;
+        head.version = document["version"];
+        head.renderer = document["renderer"];
+        head.cpu = document["cpu"];
+        head.threads = document["threads"];
+        head.frames = settings.frames;
+        head.truth = comparison.truth;
+        head.partial = interrupted();
+        writeTextFile(*options.html, comparePage(head, rows, comparison.strips));
+        spdlog::info("page: {}", options.html->string());
+    }
+    if (interrupted()) {
+        spdlog::warn(rows.empty() ? "interrupted before anything was measured"
+                                  : "interrupted: what was measured until then is kept");
+        return exitFailed;
+    }
+    if (rows.empty()) spdlog::error("nothing was measured");
+    return rows.empty() ? exitFailed : exitOk;
+}
+
+}  // namespace
+
+Command compareCommand() {
+    return {.name = "compare",
+            .summary = "error against time against number of cars for every method, their settings swept",
+            .groups = cityOptions | trafficOptions | severalCars | cellOption | pictureOptions |
+                      durationOptions | jsonOptions | htmlOptions,
+            .benches = {},
+            .run = run};
+}
+
+}  // namespace app

@@ -1,0 +1,171 @@
+#include "app/compare/ComparePage.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "app/report/Table.h"
+
+namespace app {
+
+namespace embedded {
+extern const std::string_view page, style, script, charts;
+}
+
+namespace {
+
+std::string escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text) switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            default:
+                out += c;
+        }
+    return out;
+}
+
+std::string cell(double value, int decimals) {
+    const std::string text = fixed(value, decimals);
+    return "<td data-v=\"" + (std::isfinite(value) ? fixed(value, 6) : std::string("")) + "\">" +
+           (text == "-" ? "&ndash;" : text) + "</td>";
+}
+
+std::string viewsName(const std::string& views) {
+    return views == "eyes" ? "two eyes" : views == "four" ? "four displays" : "one";
+}
+
+std::string tableRow(const CompareRow& row) {
+    const PictureErrors& e = row.againstTruth;
+    std::string html = "<tr data-method=\"" + escaped(row.point.title()) + "\"" +
+                       (row.onFront           ? " class=\"front\""
+                        : row.point.isDefault ? " class=\"default\""
+                                              : "") +
+                       "><td><i class=\"key\" data-method=\"" + escaped(row.point.title()) + "\"></i>" +
+                       escaped(row.point.title()) + "</td><td class=\"text\">" + escaped(row.point.setting) +
+                       "</td>";
+    html += "<td>" + std::to_string(row.cars) + "</td><td class=\"text\">" + viewsName(row.views) + "</td>";
+    html += cell(row.frame.median, 1) + cell(row.reflection.median, 2) + cell(row.ratioToNone, 2);
+    html += cell(e.flip, 4) + cell(row.againstRerender.flip, 4) + cell(e.hdrFlip, 4) + cell(e.psnr, 1) +
+            cell(e.ssim, 3) + cell(1000 * e.flicker, 2) + cell(row.mapsPerFrame, 1);
+    html += std::string("<td class=\"mark\">") + (row.onFront ? "&#9679;" : "") + "</td></tr>\n";
+    return html;
+}
+
+std::string tableRows(const std::vector<CompareRow>& rows) {
+    std::string html;
+    for (const CompareRow& row : rows) html += tableRow(row);
+    return html;
+}
+
+std::string factList(const PageHead& head, const std::vector<CompareRow>& rows) {
+    std::string size = "&ndash;";
+    if (!rows.empty())
+        size = std::to_string(rows.front().width) + " &times; " + std::to_string(rows.front().height);
+    const auto fact = [](const std::string& name, const std::string& value) {
+        return "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
+    };
+    return fact("City", escaped(head.city)) + fact("Seed", std::to_string(head.seed)) +
+           fact("Pictures", size + ", " + std::to_string(head.frames) + " frames each") +
+           fact("Processor", escaped(head.cpu) + ", " + std::to_string(head.threads) + " threads") +
+           fact("OpenGL", escaped(head.renderer)) + fact("Errors against", escaped(head.truth)) +
+           fact("Program", "mirrorstreet " + escaped(head.version));
+}
+
+std::string verdictRows(const std::vector<CompareRow>& rows) {
+    std::string html;
+    for (const FrontVerdict& v : frontVerdicts(rows)) {
+        const bool whole = v.points > 0 && v.below == v.points;
+        const std::string what =
+            v.points == 0 ? "cheaper than <b>mem</b>&rsquo;s cheapest, or dearer than re-rendering"
+            : whole       ? "below, at every setting measured"
+                    : "below at " + std::to_string(v.below) + " of " + std::to_string(v.points) + " settings";
+        html += "<tr><td>" + std::to_string(v.cars) + "</td><td><i class=\"key\" data-method=\"" +
+                escaped(v.other) + "\"></i>" + escaped(v.other) + "</td><td class=\"" +
+                (v.points == 0 ? "open"
+                 : whole       ? "yes"
+                               : "no") +
+                "\">" + what + "</td></tr>\n";
+    }
+    return html;
+}
+
+std::string picture(const std::string& kind, const Picture& p, const std::string& alt) {
+    return "<img class=\"" + kind + "\" src=\"" + dataUrl(p, PictureFormat::jpeg) + "\" width=\"" +
+           std::to_string(p.width) + "\" height=\"" + std::to_string(p.height) + "\" alt=\"" + escaped(alt) +
+           "\">";
+}
+
+/// Every picture is in the page once: on screen a viewer shows one method at a time, paper shows all.
+std::string stripSection(const PictureStrip& strip) {
+    const std::string cars = std::to_string(strip.cars) + (strip.cars == 1 ? " car" : " cars");
+    std::string html =
+        "<section class=\"strip\"><h3>" + cars + " on screen</h3>\n<div class=\"tabs\"></div>\n";
+    html += "<div class=\"frames\">\n<figure class=\"reference\">" +
+            picture("truth", strip.truth, "truth, " + cars) +
+            "<figcaption><b>truth</b></figcaption></figure>\n";
+    for (const PictureStrip::Frame& frame : strip.frames)
+        html += "<figure data-method=\"" + escaped(frame.title) + "\">" +
+                picture("method", frame.picture, frame.title + ", " + cars) +
+                picture("difference", frame.difference, "difference of " + frame.title + " from the truth") +
+                "<figcaption><i class=\"key\" data-method=\"" + escaped(frame.title) + "\"></i><b>" +
+                escaped(frame.title) + "</b> " + escaped(frame.setting) + ": mean FLIP " +
+                fixed(frame.flip, 4) + "</figcaption></figure>\n";
+    return html + "</div></section>\n";
+}
+
+/// JSON within a script element: nothing in it may end that element.
+std::string scriptJson(const nlohmann::ordered_json& json) {
+    std::string out;
+    for (const char c : json.dump()) out += c == '<' ? "\\u003c" : std::string(1, c);
+    return out;
+}
+
+void put(std::string& page, const std::string& mark, std::string_view text) {
+    const std::size_t at = page.find(mark);
+    if (at != std::string::npos) page.replace(at, mark.size(), text);
+}
+
+}  // namespace
+
+std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
+                        const std::vector<PictureStrip>& strips) {
+    nlohmann::ordered_json data = nlohmann::ordered_json::array();
+    for (const CompareRow& row : rows) {
+        nlohmann::ordered_json json = toJson(row, head.city);
+        json["title"] = row.point.title();
+        data.push_back(std::move(json));
+    }
+    std::string stripsHtml;
+    for (const PictureStrip& strip : strips) stripsHtml += stripSection(strip);
+    // Marks from the end to the start, so that no text put in is searched for further marks.
+    std::string page(embedded::page);
+    put(page, "@SCRIPT@", embedded::script);
+    put(page, "@DATA@", scriptJson(data));
+    put(page, "@CHARTS@", embedded::charts);
+    put(page, "@ROWS@", tableRows(rows));
+    put(page, "@STRIPS@", stripsHtml);
+    put(page, "@VERDICTS@", verdictRows(rows));
+    put(page, "@FACTS@", factList(head, rows));
+    put(page, "@PARTIAL@",
+        head.partial
+            ? "<p class=\"partial\">Partial: the measurement was interrupted; what was finished is here.</p>"
+            : "");
+    put(page, "@STYLE@", embedded::style);
+    put(page, "@TITLE@", escaped("Reflections in " + head.city + ": error against cost"));
+    return page;
+}
+
+}  // namespace app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/compare/CompareRow.h"
+#include "app/compare/PictureStrip.h"
+
+namespace app {
+
+/// Where and how a comparison was measured.
+struct PageHead {
+    std::string city;
+    std::uint64_t seed = 1;
+    std::string version, renderer, cpu;
+    unsigned threads = 0;
+    std::uint32_t frames = 0;
+    std::string truth;     ///< what errors are against
+    bool partial = false;  ///< cut short by an interrupt
+};
+
+/// One HTML page that needs nothing but itself: charts, pictures with a slider, verdicts, and a table of all
+/// rows; with a style of its own for paper. Texts from outside are escaped.
+std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
+                        const std::vector<PictureStrip>& strips);
+
+}  // namespace app
