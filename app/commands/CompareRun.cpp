@@ -26,7 +26,7 @@ constexpr std::size_t noneDrawings = 3;
 /// What bringing maps to their age counts for in the progress bar.
 constexpr std::uint32_t ageSteps = 4;
 /// Of the pictures that are kept.
-constexpr glm::ivec2 stripSize(640, 360);
+constexpr glm::ivec2 stripSize(480, 270);
 
 struct ViewKind {
     std::string name;

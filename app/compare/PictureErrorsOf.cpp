@@ -105,17 +105,24 @@ glm::ivec2 richestWindow(std::span<const unsigned char> mask, glm::ivec2 whole, 
             sums[at(x + 1, y + 1, width)] = (mask[at(x, y, whole.x)] != 0 ? 1u : 0u) +
                                             sums[at(x, y + 1, width)] + sums[at(x + 1, y, width)] -
                                             sums[at(x, y, width)];
-    glm::ivec2 best(0);
+    const auto countAt = [&](int x, int y) {
+        return sums[at(x + size.x, y + size.y, width)] + sums[at(x, y, width)] -
+               sums[at(x, y + size.y, width)] - sums[at(x + size.x, y, width)];
+    };
     std::uint32_t most = 0;
     for (int y = 0; y + size.y <= whole.y; ++y)
-        for (int x = 0; x + size.x <= whole.x; ++x) {
-            const std::uint32_t count = sums[at(x + size.x, y + size.y, width)] + sums[at(x, y, width)] -
-                                        sums[at(x, y + size.y, width)] - sums[at(x + size.x, y, width)];
-            if (count <= most) continue;
-            most = count;
-            best = {x, y};
-        }
-    return best;
+        for (int x = 0; x + size.x <= whole.x; ++x) most = std::max(most, countAt(x, y));
+    // Of those that hold nearly as much the middle one: what is looked at is not at the picture's edge.
+    glm::dvec2 sum(0);
+    double count = 0;
+    for (int y = 0; y + size.y <= whole.y; ++y)
+        for (int x = 0; x + size.x <= whole.x; ++x)
+            if (countAt(x, y) >= most - most / 50) {
+                sum += glm::dvec2(x, y);
+                ++count;
+            }
+    const glm::ivec2 middle = count > 0 ? glm::ivec2(glm::round(sum / count)) : glm::ivec2(0);
+    return glm::clamp(middle, glm::ivec2(0), glm::max(whole - size, glm::ivec2(0)));
 }
 
 Picture cutOut(const Picture& image, glm::ivec2 corner, glm::ivec2 size) {

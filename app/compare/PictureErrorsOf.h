@@ -59,7 +59,8 @@ class Judge {
     bool structure_;
 };
 
-/// Top left corner of the piece of that size, within a picture of size `whole`, in which most pixels count.
+/// Top left corner of a piece of that size, within a picture of size `whole`, in which most pixels count, or
+/// all but a fiftieth of them.
 glm::ivec2 richestWindow(std::span<const unsigned char> mask, glm::ivec2 whole, glm::ivec2 size);
 Picture cutOut(const Picture& image, glm::ivec2 corner, glm::ivec2 size);
 /// FLIP's error as a picture, see errorColour.

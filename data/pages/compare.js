@@ -45,6 +45,8 @@ const logTick = value => {
   const lead = value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9));
   return [1, 2, 5].some(k => Math.abs(lead - k) < 1e-6) ? String(+value.toPrecision(3)) : '';
 };
+/// A little below the least, so that no mark stands on the edge.
+const floorOf = values => { const known = values.filter(v => v > 0 && isFinite(v)); return known.length ? 0.8 * Math.min(...known) : undefined; };
 const logAxis = (text, extra) => Object.assign({
   type: 'logarithmic', title: { display: true, text }, grid: { color: '#eceff1' }, ticks: { callback: logTick, maxRotation: 0, autoSkip: false },
 }, extra);
@@ -89,14 +91,22 @@ for (const cars of carCounts) {
         } } },
     },
   });
+  fit(chart);
+  chart.update();
   charts.push(chart);
   fronts.push([cars, chart]);
+}
+function fit(chart) {
+  const points = chart.data.datasets.flatMap(set => set.data);
+  chart.options.scales.x.min = floorOf(points.map(p => p.x));
+  chart.options.scales.y.min = floorOf(points.map(p => p.y));
 }
 function redraw() {
   const measure = document.getElementById('measure').value;
   for (const [cars, chart] of fronts) {
     chart.data.datasets = datasetsFor(cars, measure);
     chart.options.scales.y.title.text = measures[measure][0];
+    fit(chart);
     chart.update();
   }
 }
@@ -130,9 +140,23 @@ charts.push(new Chart(document.getElementById('by-views'), {
   options: lineOptions({ grid: { display: false } }, logAxis('ms a frame')),
 }));
 
-// Paper has another width, and canvases must be told before it is laid out.
-window.addEventListener('beforeprint', () => charts.forEach(chart => chart.resize()));
-window.addEventListener('afterprint', () => charts.forEach(chart => chart.resize()));
+// Paper shows a picture of each chart, drawn at paper's proportions: a canvas does not follow another layout.
+for (const chart of charts) {
+  const paper = document.createElement('img');
+  paper.className = 'paper';
+  paper.alt = '';
+  chart.canvas.parentNode.after(paper);
+  chart.paper = paper;
+}
+function drawForPaper() {
+  for (const chart of charts) {
+    const wide = chart.canvas.parentNode.parentNode.clientWidth > 900;
+    chart.resize(wide ? 1040 : 520, 350);
+    chart.paper.src = chart.toBase64Image();
+    chart.resize();
+  }
+}
+window.addEventListener('beforeprint', drawForPaper);
 
 // The viewer: one method at a time beside the truth.
 document.querySelectorAll('.strip').forEach(strip => {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "tests/reflection/tracing/SeededRandom.h"
@@ -351,6 +352,31 @@ TEST(ReflectionPlanTest, sameFramesGiveTheSamePlans) {
         return trace;
     };
     EXPECT_EQ(run(), run());
+}
+
+TEST(ReflectionPlanTest, inTurnNobodyWaitsLongerThanARound) {
+    Street street(9);
+    street.fill(20);
+    ReflectionPlanner planner;
+    PlanOptions options;
+    options.mapsInTurn = 3;
+    options.sizeClass = 2;
+    std::vector<SeenVehicle> seen;
+    for (std::uint32_t i = 0; i < 20; ++i) seen.push_back({i, 50});
+    std::map<std::uint32_t, int> age;
+    for (int frame = 0; frame < 40; ++frame) {
+        street.step(0.05);
+        const ReflectionPlan plan = planner.plan(street.scene, seen, heights, options);
+        expectSound(plan, street.scene, seen, planner);
+        // All at first, for nobody is without a map; then three a frame.
+        EXPECT_EQ(plan.jobs.size(), frame == 0 ? 20u : 3u);
+        for (auto& [id, frames] : age) ++frames;
+        for (const MapJob& job : plan.jobs) {
+            EXPECT_EQ(job.slot.sizeClass, 2);
+            age[street.scene.vehicles[job.vehicle].id] = 0;
+        }
+        for (const auto& [id, frames] : age) EXPECT_LE(frames, 7) << "a round of twenty, three a frame";
+    }
 }
 
 TEST(ReflectionPlanTest, mostUrgentComesFirst) {

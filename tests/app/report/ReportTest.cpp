@@ -217,5 +217,29 @@ TEST(VideoWriterTest, namesLikeOptionsOrProtocolsAreNames) {
     EXPECT_EQ(entries(folder), 3u);
 }
 
+TEST(PictureTest, base64IsThatOfTheStandard) {
+    // RFC 4648, section 10.
+    const auto of = [](const std::string& text) { return base64({text.begin(), text.end()}); };
+    EXPECT_EQ(of(""), "");
+    EXPECT_EQ(of("f"), "Zg==");
+    EXPECT_EQ(of("fo"), "Zm8=");
+    EXPECT_EQ(of("foo"), "Zm9v");
+    EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64({0xff, 0xfe, 0xfb}), "//77");
+}
+
+TEST(PictureTest, picturesInPagesAreWholeFiles) {
+    const Picture picture{5, 3, std::vector<std::uint8_t>(5 * 3 * 4, 200)};
+    const std::vector<unsigned char> png = encodePicture(picture, PictureFormat::png),
+                                     jpeg = encodePicture(picture, PictureFormat::jpeg);
+    ASSERT_GT(png.size(), 8u);
+    EXPECT_EQ(png[1], 'P');
+    ASSERT_GT(jpeg.size(), 4u);
+    EXPECT_EQ(jpeg[0], 0xff);
+    EXPECT_EQ(jpeg.back(), 0xd9);
+    EXPECT_TRUE(dataUrl(picture, PictureFormat::jpeg).starts_with("data:image/jpeg;base64,"));
+    EXPECT_THROW(encodePicture({}, PictureFormat::png), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace app
