@@ -19,7 +19,7 @@ constexpr float brushedWidth = 4.0f / 64;
 constexpr float farOutside = 4;
 
 struct Mirror {
-    glm::vec3 position, facing, direction;
+    glm::vec3 position, direction;
 };
 
 /// Any two directions that make a frame with a third.
@@ -36,6 +36,8 @@ void MirrorPixels::addPixel(const RayPaths::Scene& scene, const ViewRays& view, 
     const RayShading& shading = *scene.shading;
     const glm::vec2 middle = glm::vec2(pixel.pixel) + 0.5f;
     const glm::vec3 facing = pixel.triangle.facing();
+    std::array<glm::vec3, 3> normals;
+    RayShading::cornerNormals(*pixel.placed, pixel.triangle, normals);
     const auto mirrorAt = [&](const glm::vec2& offset, Mirror& mirror) {
         const glm::vec3 through = view.through(middle + offset);
         glm::vec2 weights = pixel.weights;
@@ -45,8 +47,8 @@ void MirrorPixels::addPixel(const RayPaths::Scene& scene, const ViewRays& view, 
                 glm::all(glm::lessThan(glm::abs(there), glm::vec2(farOutside))))
                 weights = there;
         }
-        const glm::vec3 normal = shading.vehicleNormal(*pixel.placed, pixel.triangle, weights);
-        mirror = {pixel.triangle.at(weights), facing, mirrorDirection(normal, -glm::normalize(through))};
+        const glm::vec3 normal = glm::normalize(blend(normals[0], normals[1], normals[2], weights));
+        mirror = {pixel.triangle.at(weights), mirrorDirection(normal, -glm::normalize(through))};
     };
     Mirror centre, right, below;
     mirrorAt({0, 0}, centre);

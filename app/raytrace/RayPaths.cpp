@@ -15,10 +15,6 @@ constexpr float offSurface = 0.001f;
 
 }  // namespace
 
-glm::vec3 mirrorDirection(const glm::vec3& normal, const glm::vec3& towardsEye) {
-    return glm::normalize(2 * glm::dot(normal, towardsEye) * normal - towardsEye);
-}
-
 glm::vec3 mirrorStart(const glm::vec3& position, const glm::vec3& facing, const glm::vec3& direction) {
     // Interpolated normals may send a ray below its triangle, at outlines above all. It then starts below,
     // and leaves the body through the backs of its panels, which rays pass.

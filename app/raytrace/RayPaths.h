@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -20,7 +21,9 @@ struct PathRay {
 };
 
 /// Direction in which light comes from that a surface mirrors towards the eye, as vehicle.frag has it.
-glm::vec3 mirrorDirection(const glm::vec3& normal, const glm::vec3& towardsEye);
+inline glm::vec3 mirrorDirection(const glm::vec3& normal, const glm::vec3& towardsEye) {
+    return glm::normalize(2 * glm::dot(normal, towardsEye) * normal - towardsEye);
+}
 
 /// Where a mirror ray starts: off the surface, on the side to which it goes.
 glm::vec3 mirrorStart(const glm::vec3& position, const glm::vec3& facing, const glm::vec3& direction);

@@ -15,11 +15,6 @@ constexpr float inversePi = std::numbers::inv_pi_v<float>;
 /// Metres by which rays to the sun start off the surface: a hundred roundings of a coordinate of a kilometre.
 constexpr float offSurface = 0.006f;
 
-template <class T>
-T blend(const T& a, const T& b, const T& c, const glm::vec2& w) {
-    return a * (1 - w.x - w.y) + b * w.x + c * w.y;
-}
-
 }  // namespace
 
 bool MetTriangle::meet(const glm::vec3& origin, const glm::vec3& direction, glm::vec2& weights) const {
@@ -43,7 +38,7 @@ MetTriangle RayShading::triangle(const PlacedMesh& placed, const reflection::Tra
     MetTriangle met;
     for (std::size_t k = 0; k < 3; ++k) {
         met.corner[k] = &mesh.vertices[mesh.indices[3 * std::size_t{hit.triangle} + k]];
-        met.position[k] = glm::vec3(placed.worldFromMesh * glm::vec4(met.corner[k]->position, 1));
+        met.position[k] = transformPoint(placed.worldFromMesh, met.corner[k]->position);
     }
     return met;
 }
@@ -51,7 +46,7 @@ MetTriangle RayShading::triangle(const PlacedMesh& placed, const reflection::Tra
 float RayShading::sunAt(const glm::vec3& position, const glm::vec3& normal) const {
     if (sunMap_ != nullptr)
         return sunMap_->lightAt(
-            glm::vec3(sunMap_->shadowFromWorld * glm::vec4(position + normal * sunMap_->normalOffset, 1)));
+            transformPoint(sunMap_->shadowFromWorld, position + normal * sunMap_->normalOffset));
     if (blockers_ == nullptr) return 1;
     // Towards the side from which the sun shines: leaves are lit from both.
     const float side = glm::dot(normal, lighting_.sunDirection) >= 0 ? offSurface : -offSurface;
@@ -75,14 +70,13 @@ PatternSampler::Level RayShading::levelOf(const MetTriangle& triangle, float foo
 
 glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
                            PatternSampler::Level level) const {
-    const glm::mat3 linear(placed.worldFromMesh);
     glm::vec3 normal[3], shaded[3], sunlit[3];
     bool sunny = false;
     for (std::size_t k = 0; k < 3; ++k) {
         const city::Vertex& v = *triangle.corner[k];
         normal[k] = placed.mesh == meshes_->chunks() || placed.mesh == meshes_->whole()
                         ? v.normal
-                        : glm::normalize(linear * v.normal);
+                        : glm::normalize(transformDirection(placed.worldFromMesh, v.normal));
         glm::vec3 tint(0.8f), emission(0);
         if (v.material < city_->materials.size()) {
             tint = city_->materials[v.material].tint;
@@ -110,21 +104,18 @@ glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle
     return root * root * light;
 }
 
-glm::vec3 RayShading::vehicleNormal(const PlacedMesh& placed, const MetTriangle& triangle,
-                                    const glm::vec2& weights) const {
-    const glm::mat3 linear(placed.worldFromMesh);
-    glm::vec3 n[3];
-    for (std::size_t k = 0; k < 3; ++k) n[k] = glm::normalize(linear * triangle.corner[k]->normal);
-    return glm::normalize(blend(n[0], n[1], n[2], weights));
+void RayShading::cornerNormals(const PlacedMesh& placed, const MetTriangle& triangle,
+                               std::array<glm::vec3, 3>& normals) {
+    for (std::size_t k = 0; k < 3; ++k)
+        normals[k] = glm::normalize(transformDirection(placed.worldFromMesh, triangle.corner[k]->normal));
 }
 
 VehiclePoint RayShading::vehicle(const PlacedMesh& placed, const MetTriangle& triangle,
                                  const glm::vec2& weights, const vehicles::VehiclePose& pose) const {
-    const glm::mat3 linear(placed.worldFromMesh);
-    glm::vec3 n[3];
+    std::array<glm::vec3, 3> n;
+    cornerNormals(placed, triangle, n);
     CoatedVertex c[3];
     for (std::size_t k = 0; k < 3; ++k) {
-        n[k] = glm::normalize(linear * triangle.corner[k]->normal);
         c[k] = coatedVertex(lighting_, static_cast<vehicles::Surface>(triangle.corner[k]->material), pose,
                             n[k], sunAt(triangle.position[k], n[k]));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -9,6 +10,19 @@
 #include "app/raytrace/RayScene.h"
 
 namespace app {
+
+/// Values at a triangle's corners, blended. Inline, as are the transforms: GLM's own are calls, and there is
+/// one for each corner of each hit.
+template <class T>
+inline T blend(const T& a, const T& b, const T& c, const glm::vec2& w) {
+    return a * (1 - w.x - w.y) + b * w.x + c * w.y;
+}
+inline glm::vec3 transformPoint(const glm::mat4& m, const glm::vec3& p) {
+    return glm::vec3(m[0]) * p.x + glm::vec3(m[1]) * p.y + glm::vec3(m[2]) * p.z + glm::vec3(m[3]);
+}
+inline glm::vec3 transformDirection(const glm::mat4& m, const glm::vec3& d) {
+    return glm::vec3(m[0]) * d.x + glm::vec3(m[1]) * d.y + glm::vec3(m[2]) * d.z;
+}
 
 /// A triangle that a ray met, in world coordinates.
 struct MetTriangle {
@@ -53,9 +67,9 @@ class RayShading {
 
     VehiclePoint vehicle(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
                          const vehicles::VehiclePose& pose) const;
-    /// The interpolated normal alone.
-    glm::vec3 vehicleNormal(const PlacedMesh& placed, const MetTriangle& triangle,
-                            const glm::vec2& weights) const;
+    /// The unit normals of a vehicle's triangle at its corners, in world axes: to be interpolated.
+    static void cornerNormals(const PlacedMesh& placed, const MetTriangle& triangle,
+                              std::array<glm::vec3, 3>& normals);
     /// Reflectance at normal incidence of the triangle's surface: its corners are of one.
     static bool brushed(const CoatedVertex& coat) { return coat.f0 > 0.3f && coat.f0 < 0.5f; }
 

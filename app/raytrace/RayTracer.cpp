@@ -276,12 +276,12 @@ void RayTracer::mirrored(const View& view, std::span<const std::uint32_t> chosen
         scratch.rays.clear();
         scratch.mirrors.clear();
         const VehicleTiles::Tile tile = tiles[t];
-        // Packets are blocks of four by two pixels.
+        // Packets are blocks of four by four pixels.
         std::vector<glm::ivec2>& pixels = scratch.pixels;
         pixels.clear();
-        for (int y = tile.low.y; y < tile.high.y; y += 2)
+        for (int y = tile.low.y; y < tile.high.y; y += 4)
             for (int x = tile.low.x; x < tile.high.x; x += 4)
-                for (int k = 0; k < 8; ++k) {
+                for (int k = 0; k < 16; ++k) {
                     const glm::ivec2 p(x + (k & 3), y + (k >> 2));
                     if (p.x >= tile.high.x || p.y >= tile.high.y) continue;
                     pixels.push_back(p);

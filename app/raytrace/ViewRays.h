@@ -15,31 +15,28 @@ namespace app {
 /// top left corner of the picture, pixels' middles at .5.
 class ViewRays {
   public:
-    explicit ViewRays(const View& view) : eye(view.eye), exactEye(view.eye) {
+    explicit ViewRays(const View& view) : eye(view.eye) {
         const glm::dmat4 relativeFromClip = glm::inverse(glm::dmat4(view.clipFromView * view.viewFromWorld));
         const auto through = [&](double x, double y) {
             const glm::dvec4 p = relativeFromClip * glm::dvec4(x, y, 1, 1);  // on the near plane
             return glm::dvec3(p) / p.w;
         };
-        corner_ = through(-1, 1);
-        right_ = (through(1, 1) - corner_) / static_cast<double>(view.size.x);
-        down_ = (through(-1, -1) - corner_) / static_cast<double>(view.size.y);
-        spread = static_cast<float>(glm::length(right_) / glm::length(corner_ + 0.5 * view.size.x * right_ +
-                                                                      0.5 * view.size.y * down_));
+        const glm::dvec3 corner = through(-1, 1);
+        corner_ = glm::vec3(corner);
+        right_ = glm::vec3((through(1, 1) - corner) / static_cast<double>(view.size.x));
+        down_ = glm::vec3((through(-1, -1) - corner) / static_cast<double>(view.size.y));
+        spread = glm::length(right_) / glm::length(glm::vec3(through(0, 0)));
     }
 
-    /// From the eye to the near plane.
-    glm::vec3 through(const glm::vec2& pixel) const {
-        return glm::vec3(corner_ + static_cast<double>(pixel.x) * right_ +
-                         static_cast<double>(pixel.y) * down_);
-    }
+    /// From the eye to the near plane. In floats: off by a ten thousandth of a pixel in pictures of a few
+    /// thousand.
+    glm::vec3 through(const glm::vec2& pixel) const { return corner_ + pixel.x * right_ + pixel.y * down_; }
 
     glm::vec3 eye;
-    glm::dvec3 exactEye;
     float spread = 0;  ///< width of a pixel in the picture's middle, for each metre of distance
 
   private:
-    glm::dvec3 corner_{0}, right_{0}, down_{0};
+    glm::vec3 corner_{0}, right_{0}, down_{0};
 };
 
 }  // namespace app

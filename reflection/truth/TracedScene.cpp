@@ -10,7 +10,9 @@ namespace reflection {
 
 namespace {
 
-constexpr std::size_t packet = 8;
+/// Rays of neighbouring pixels: packets of sixteen told to be coherent took two thirds of the time of eight
+/// that were not, mirror rays included.
+constexpr std::size_t packet = 16;
 /// The filter of a query is heard only where the scene says so.
 const RTCSceneFlags sceneFlags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
@@ -174,8 +176,9 @@ void TracedScene::commit() {
 void TracedScene::trace(std::span<const TracedRay> rays, std::span<TracedHit> hits, Backs backs) const {
     RayContext context;
     rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     if (backs == Backs::pass) context.embree.filter = filterBacks;
-    alignas(64) RTCRayHit8 packed;
+    alignas(64) RTCRayHit16 packed;
     alignas(64) int valid[packet];
     for (std::size_t first = 0; first < rays.size(); first += packet) {
         const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
@@ -185,7 +188,7 @@ void TracedScene::trace(std::span<const TracedRay> rays, std::span<TracedHit> hi
             packed.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
             packed.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
-        rtcIntersect8(valid, impl_->scene, &context.embree, &packed);
+        rtcIntersect16(valid, impl_->scene, &context.embree, &packed);
         for (std::size_t i = 0; i < some.size(); ++i) {
             TracedHit& hit = hits[first + i];
             hit = {};
@@ -199,13 +202,14 @@ void TracedScene::trace(std::span<const TracedRay> rays, std::span<TracedHit> hi
 void TracedScene::blocked(std::span<const TracedRay> rays, std::span<std::uint8_t> result) const {
     RayContext context;
     rtcInitIntersectContext(&context.embree);
-    alignas(64) RTCRay8 packed;
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) RTCRay16 packed;
     alignas(64) int valid[packet];
     for (std::size_t first = 0; first < rays.size(); first += packet) {
         const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
         context.rays = some.data();
         fill(packed, some, valid);
-        rtcOccluded8(valid, impl_->scene, &context.embree, &packed);
+        rtcOccluded16(valid, impl_->scene, &context.embree, &packed);
         // Embree marks what is blocked with a far end of minus infinity.
         for (std::size_t i = 0; i < some.size(); ++i) result[first + i] = packed.tfar[i] < 0 ? 1 : 0;
     }
