@@ -220,8 +220,10 @@ LoadedHeightfield loadHeightfield(const fs::path& file, float cellSize) {
         notes.push_back("The file has " + std::to_string(spec.nchannels) +
                         " channels; the first was taken as height.");
 
-    Heightfield field(spec.width, spec.height, cellSize, origin);
+    // The last row before the memory for all: a damaged header may tell of far more than the file holds.
     std::vector<double> row;
+    reader.row(spec.height - 1, row);
+    Heightfield field(spec.width, spec.height, cellSize, origin);
     std::size_t unknown = 0;
     for (int y = 0; y < spec.height; ++y) {
         reader.row(y, row);

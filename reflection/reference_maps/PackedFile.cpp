@@ -18,20 +18,6 @@ constexpr std::uint64_t magic = 0x3170616d6b63616dull;  // "mackmap1": magic and
 constexpr std::uint32_t mostLevels = 16;
 constexpr std::uint32_t greatestFace = 8192;
 
-/// Multiply-and-fold over 8-byte words: finds every truncation and flipped bit that a disk makes, at memory
-/// speed.
-std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
-    std::uint64_t hash = 0x9e3779b97f4a7c15ull ^ size;
-    std::size_t i = 0;
-    for (; i + 8 <= size; i += 8) {
-        std::uint64_t word;
-        std::memcpy(&word, data + i, 8);
-        hash = std::rotl((hash ^ word) * 0xbf58476d1ce4e5b9ull, 29);
-    }
-    for (; i < size; ++i) hash = std::rotl((hash ^ data[i]) * 0xbf58476d1ce4e5b9ull, 29);
-    return hash ^ (hash >> 32);
-}
-
 class Writer {
   public:
     template <class T>
@@ -61,6 +47,7 @@ class Reader {
         std::memcpy(to, bytes_.data() + at_, size);
         at_ += size;
     }
+    std::size_t left() const { return end_ - at_; }
     bool finished() const { return good && at_ == end_; }
     bool good = true;
 
@@ -70,6 +57,20 @@ class Reader {
 };
 
 }  // namespace
+
+/// Multiply-and-fold over 8-byte words: finds every truncation and flipped bit that a disk makes, at memory
+/// speed.
+std::uint64_t packedFileHash(std::span<const std::uint8_t> bytes) {
+    std::uint64_t hash = 0x9e3779b97f4a7c15ull ^ bytes.size();
+    std::size_t i = 0;
+    for (; i + 8 <= bytes.size(); i += 8) {
+        std::uint64_t word;
+        std::memcpy(&word, bytes.data() + i, 8);
+        hash = std::rotl((hash ^ word) * 0xbf58476d1ce4e5b9ull, 29);
+    }
+    for (; i < bytes.size(); ++i) hash = std::rotl((hash ^ bytes[i]) * 0xbf58476d1ce4e5b9ull, 29);
+    return hash ^ (hash >> 32);
+}
 
 std::optional<PackedFileKey> packedFileKey(const std::filesystem::path& source, std::uint64_t contentHash) {
     std::error_code error;
@@ -93,7 +94,7 @@ std::optional<PackedReferenceMap> loadPacked(const std::filesystem::path& file, 
     const std::size_t end = bytes.size() - sizeof(std::uint64_t);
     std::uint64_t sum;
     std::memcpy(&sum, bytes.data() + end, sizeof sum);
-    if (sum != checksum(bytes.data(), end)) return std::nullopt;
+    if (sum != packedFileHash(std::span(bytes).first(end))) return std::nullopt;
 
     Reader reader(bytes, end);
     if (reader.get<std::uint64_t>() != magic || reader.get<std::uint64_t>() != key.contentHash ||
@@ -102,14 +103,19 @@ std::optional<PackedReferenceMap> loadPacked(const std::filesystem::path& file, 
     const auto position = reader.get<glm::dvec3>();
     const auto scale = reader.get<float>();
     const auto levelCount = reader.get<std::uint32_t>();
-    if (!reader.good || levelCount < 1 || levelCount > mostLevels || !std::isfinite(scale))
+    if (!reader.good || levelCount < 1 || levelCount > mostLevels || !std::isfinite(scale) ||
+        !std::isfinite(position.x + position.y + position.z))
         return std::nullopt;
     std::vector<PackedReferenceMap::Level> levels;
     for (std::uint32_t k = 0; k < levelCount; ++k) {
         const auto faceSize = reader.get<std::uint32_t>();
         if (!reader.good || faceSize < 4 || faceSize > greatestFace || faceSize % 2 != 0) return std::nullopt;
-        std::vector<std::uint8_t> words(PackedReferenceMap::Level::wordBytes(static_cast<int>(faceSize)));
-        std::vector<std::uint16_t> chroma(PackedReferenceMap::Level::chromaCount(static_cast<int>(faceSize)));
+        const std::size_t wordBytes = PackedReferenceMap::Level::wordBytes(static_cast<int>(faceSize));
+        const std::size_t chromaCount = PackedReferenceMap::Level::chromaCount(static_cast<int>(faceSize));
+        // No memory for what the file does not hold.
+        if (wordBytes + chromaCount * sizeof(std::uint16_t) > reader.left()) return std::nullopt;
+        std::vector<std::uint8_t> words(wordBytes);
+        std::vector<std::uint16_t> chroma(chromaCount);
         reader.get(words.data(), words.size());
         reader.get(chroma.data(), chroma.size() * sizeof(std::uint16_t));
         levels.emplace_back(static_cast<int>(faceSize), scale, std::move(words), std::move(chroma));
@@ -133,7 +139,7 @@ bool savePacked(const std::filesystem::path& file, const PackedFileKey& key, con
         writer.put(level.chroma(),
                    PackedReferenceMap::Level::chromaCount(level.faceSize()) * sizeof(std::uint16_t));
     }
-    writer.put(checksum(writer.bytes.data(), writer.bytes.size()));
+    writer.put(packedFileHash(writer.bytes));
 
     const std::filesystem::path aside = file.parent_path() / (file.filename().string() + ".partial");
     std::error_code error;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "reflection/reference_maps/PackedReferenceMap.h"
 
@@ -23,6 +24,9 @@ struct PackedFileKey {
 
 /// The key of a map whose OpenEXR file is `source`; nullopt when there is no such file.
 std::optional<PackedFileKey> packedFileKey(const std::filesystem::path& source, std::uint64_t contentHash);
+
+/// The hash that ends a file, of all bytes before it.
+std::uint64_t packedFileHash(std::span<const std::uint8_t> bytes);
 
 /// Nothing when the file is absent, damaged or belongs to another key. Never throws for a bad file.
 std::optional<PackedReferenceMap> loadPacked(const std::filesystem::path& file, const PackedFileKey& key);

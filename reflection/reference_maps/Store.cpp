@@ -6,8 +6,10 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
+#include <OpenEXR/ImfVersion.h>
 
 #include <array>
 #include <bit>
@@ -84,6 +86,20 @@ std::vector<std::size_t> pictureIndex(int n) {
                 index[i] = static_cast<std::size_t>(corner + x * alongX + y * alongY);
     }
     return index;
+}
+
+/// The header alone: Imf::InputFile would first make room for all the lines of which it tells. Throws what
+/// OpenEXR throws.
+Imf::Header headerOf(const std::filesystem::path& file) {
+    Imf::StdIFStream in(file.string().c_str());
+    std::array<char, 4> magic{}, flags{};
+    in.read(magic.data(), static_cast<int>(magic.size()));
+    in.read(flags.data(), static_cast<int>(flags.size()));
+    if (!Imf::isImfMagic(magic.data())) throw std::runtime_error("is no OpenEXR file");
+    int version = std::bit_cast<int>(flags);
+    Imf::Header header;
+    header.readFrom(in, version);
+    return header;
 }
 
 void renameInto(const std::filesystem::path& aside, const std::filesystem::path& file) {
@@ -177,8 +193,7 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
     std::error_code error;
     if (!std::filesystem::exists(source, error)) return {};
     try {
-        Imf::InputFile in(source.string().c_str(), 1);
-        const Imf::Header& header = in.header();
+        const Imf::Header header = headerOf(source);
         const auto* hash = header.findTypedAttribute<Imf::StringAttribute>(hashAttribute);
         const auto* position = header.findTypedAttribute<Imf::V3dAttribute>(positionAttribute);
         if (!hash || hash->value() != hex(contentHash_))
@@ -186,13 +201,21 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         if (!position || !std::isfinite(position->value().x + position->value().y + position->value().z))
             return {std::nullopt, "has no position"};
         const Imath::Box2i window = header.dataWindow();
-        const int n = window.max.x - window.min.x + 1;
-        if (n < 4 || n % 2 != 0 || n > greatestFace || window.max.y - window.min.y + 1 != 6 * n)
+        const std::int64_t across = std::int64_t{window.max.x} - window.min.x + 1;
+        const std::int64_t down = std::int64_t{window.max.y} - window.min.y + 1;
+        if (across < 4 || across % 2 != 0 || across > greatestFace || down != 6 * across)
             return {std::nullopt, "is not six even square faces"};
+        const auto n = static_cast<int>(across);
+        // No memory for what the file does not hold: deflate shrinks by 1032 at most (zlib's documentation).
+        constexpr std::uintmax_t texelBytes = 3 * sizeof(std::uint16_t) + sizeof(float);
+        const auto side = static_cast<std::uintmax_t>(n);
+        if (6 * side * side * texelBytes > 1032 * std::filesystem::file_size(source))
+            return {std::nullopt, "tells of more texels than it can hold"};
         for (const char* channel : {"R", "G", "B", "Z"})
             if (!header.channels().findChannel(channel))
                 return {std::nullopt, std::string("lacks channel ") + channel};
 
+        Imf::InputFile in(source.string().c_str(), 1);
         ReferenceMap map;
         map.faceSize = n;
         map.position = {position->value().x, position->value().y, position->value().z};

@@ -218,6 +218,23 @@ TEST_F(StoreTest, flippedBytesNeverGiveAnotherMap) {
     }
 }
 
+TEST_F(StoreTest, noMemoryIsTakenForTexelsThatTheFileCannotHold) {
+    const ReferenceMapStore store(folder_, hash);
+    store.save(0, randomMap(4, 1));
+    std::string bytes = bytesOf(store.file(0));
+    const std::string name("dataWindow\0box2i\0", 17);
+    const std::size_t at = bytes.find(name);
+    ASSERT_NE(at, std::string::npos);
+    // Behind the name the attribute's size, then the window: two corners of two numbers each.
+    const std::int32_t corner[2] = {8191, 6 * 8192 - 1};
+    bytes.replace(at + name.size() + 4 + 8, sizeof corner, reinterpret_cast<const char*>(corner),
+                  sizeof corner);
+    writeBytes(store.file(0), bytes);
+    const auto loaded = store.load(0);
+    EXPECT_FALSE(loaded.map);
+    EXPECT_NE(loaded.damage.find("more texels than it can hold"), std::string::npos) << loaded.damage;
+}
+
 TEST_F(StoreTest, rubbishIsReported) {
     const ReferenceMapStore store(folder_, hash);
     std::filesystem::create_directories(folder_);
