@@ -242,14 +242,25 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->capture_default_str()
             ->check(wholeBetween(0, 0xffffffffffffffffull));
     }
-    if (groups & displayOptions) {
+    if (groups & displayOptions)
         parser.add_flag("--offscreen", o.offscreen, "no window, even where there is a display");
+    if (groups & (displayOptions | shotOptions)) {
         addNamed(parser, "--camera", o.camera, cameraModeNames,
                  "camera at the start (default: off screen, shots of a car and of the tour in turn)");
         parser.add_option("--stills", o.stills, "pictures to take along a drive without a window")
             ->type_name("N")
             ->capture_default_str()
             ->check(wholeBetween(0, 10000));
+    }
+    if (groups & rayOptions) {
+        parser.add_option("--samples", o.samples, "mirror rays for each pixel of a vehicle, 1 to 65536")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(1, 65536));
+        parser.add_option("--bounces", o.bounces, "mirrors in a row, 1 to 16")
+            ->type_name("N")
+            ->capture_default_str()
+            ->check(wholeBetween(1, 16));
     }
     if (groups & exportOptions) {
         parser.add_option("--city", o.exportCity, "write the city to this file")

@@ -44,6 +44,8 @@ struct Options {
     bool offscreen = false;
     std::optional<CameraMode> camera;  ///< nothing: shots of both kinds in turn
     std::uint32_t stills = 6;
+    std::uint32_t samples = 64;  ///< mirror rays a pixel
+    std::uint32_t bounces = 3;   ///< mirrors in a row
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
     std::uint64_t rays = 4'000'000;  ///< of `stability`
@@ -75,6 +77,8 @@ enum OptionGroup : unsigned {
     mapsOnOptions = 1u << 15,     ///< --maps-on --gpu-map-memory
     stabilityOptions = 1u << 16,  ///< --rays, and --seed without a city
     htmlOptions = 1u << 17,       ///< --html
+    rayOptions = 1u << 18,        ///< --samples --bounces
+    shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

@@ -36,6 +36,32 @@ std::vector<glm::vec3> TracedPicture::display(float exposure) const {
     return pixels;
 }
 
+MirroredLight TracedPicture::mirroredLight() const {
+    MirroredLight light;
+    light.size = size;
+    light.high = size;
+    light.radiance = mirrored;
+    std::vector<unsigned char> known(kind.size());
+    for (std::size_t i = 0; i < kind.size(); ++i) known[i] = kind[i] == SeenKind::vehicle ? 1 : 0;
+    light.pixels = static_cast<std::uint64_t>(std::count(known.begin(), known.end(), 1));
+    fillOutlines(light, known, {0, 0}, size, [](int, int) { return true; });
+    return light;
+}
+
+void TracedPicture::append(const TracedPicture& below) {
+    const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    size = {below.size.x, size.y + below.size.y};
+    add(radiance, below.radiance);
+    add(displayFactor, below.displayFactor);
+    add(distance, below.distance);
+    add(normal, below.normal);
+    add(kind, below.kind);
+    add(vehicle, below.vehicle);
+    add(surface, below.surface);
+    add(fresnel, below.fresnel);
+    add(mirrored, below.mirrored);
+}
+
 struct RayTracer::Impl {
     Impl(const city::CityModel& cityModel, std::span<const vehicles::VehicleModel> models)
         : city(cityModel), meshes(cityModel, models), standing(meshes), shading(cityModel, meshes) {
@@ -195,6 +221,7 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
     picture.vehicle.resize(count);
     picture.surface.resize(count);
     picture.fresnel.resize(count);
+    picture.mirrored.resize(count);
 
     Impl& my = *impl_;
     my.height = view.size.y;
@@ -233,6 +260,7 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
         scratch.gatherer.gather(my.pathsIn(*mirrored), rays, scratch.mirrors, options, scratch.light);
         for (std::size_t i = 0; i < scratch.mirrors.size(); ++i) {
             const std::size_t index = row + static_cast<std::size_t>(scratch.mirrors[i].pixel.x);
+            picture.mirrored[index] = scratch.light[i];
             picture.radiance[index] += scratch.light[i] * picture.fresnel[index];
         }
     });
@@ -314,7 +342,10 @@ void RayTracer::mirrored(const View& view, std::span<const std::uint32_t> chosen
     });
     light.rays = rayCount;
     light.pixels = pixelCount;
-    tiles.fillOutlines(light, known);
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+        fillOutlines(light, known, tiles[t].low, tiles[t].high,
+                     [&](int x, int y) { return tiles.covers(x, y); });
+    });
     light.low = view.size;
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         light.low = glm::min(light.low, tiles[t].low);

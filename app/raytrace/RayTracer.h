@@ -47,10 +47,15 @@ struct TracedPicture {
     std::vector<std::uint32_t> vehicle;
     /// Material of the city, vehicles::Surface of vehicles; 0 elsewhere.
     std::vector<std::uint32_t> surface;
-    std::vector<float> fresnel;  ///< share of the mirrored light; 0 but on mirroring vehicles
+    std::vector<float> fresnel;       ///< share of the mirrored light; 0 where none is traced
+    std::vector<glm::vec3> mirrored;  ///< the light that vehicles mirror, already within `radiance`
 
     /// Display colours, sRGB-encoded 0..1, as drawView leaves them.
     std::vector<glm::vec3> display(float exposure) const;
+    /// `mirrored` as the rasteriser takes it, with pixels next to vehicles filled in. For whole pictures.
+    MirroredLight mirroredLight() const;
+    /// Puts the rows of another picture, equally wide, below these.
+    void append(const TracedPicture& below);
 };
 
 /// The scene of a frame as rays see it: the same city, materials, vehicles, sky and light as the rasteriser's

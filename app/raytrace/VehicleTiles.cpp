@@ -1,7 +1,5 @@
 #include "app/raytrace/VehicleTiles.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -50,31 +48,6 @@ VehicleTiles::VehicleTiles(const FrameScene& frame, std::span<const std::uint32_
             if (covers(x * side, y * side))
                 tiles_.push_back(
                     {glm::ivec2(x, y) * side, glm::min(glm::ivec2(x + 1, y + 1) * side, view.size)});
-}
-
-void VehicleTiles::fillOutlines(MirroredLight& light, std::span<const unsigned char> known) const {
-    const auto index = [&](int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(light.size.x) +
-               static_cast<std::size_t>(x);
-    };
-    // Only pixels that are not known are written, only known ones read.
-    tbb::parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t t) {
-        for (int y = tiles_[t].low.y; y < tiles_[t].high.y; ++y)
-            for (int x = tiles_[t].low.x; x < tiles_[t].high.x; ++x) {
-                if (known[index(x, y)] != 0) continue;
-                glm::vec3 sum(0);
-                float count = 0;
-                for (int k = 0; k < 9; ++k) {
-                    const int nx = x + k % 3 - 1, ny = y + k / 3 - 1;
-                    if (nx < 0 || ny < 0 || nx >= light.size.x || ny >= light.size.y || !covers(nx, ny) ||
-                        known[index(nx, ny)] == 0)
-                        continue;
-                    sum += light.radiance[index(nx, ny)];
-                    ++count;
-                }
-                if (count > 0) light.radiance[index(x, y)] = sum / count;
-            }
-    });
 }
 
 }  // namespace app
