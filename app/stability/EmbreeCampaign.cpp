@@ -35,6 +35,7 @@ void tryField(const FieldKind& kind, SeededRandom& random, std::vector<Tally>& t
     const EmbreeColumns quick(field, false), robust(field, true);
     const double farthest = std::max(std::abs(field.origin().x), std::abs(field.origin().y)) +
                             std::max(field.width(), field.height()) * static_cast<double>(field.cellSize());
+    const double lowest = *std::min_element(field.cells().begin(), field.cells().end());
     for (std::size_t f = 0; f < std::size(families); ++f) {
         std::vector<city::Ray> rays;
         std::vector<float> truths;
@@ -47,8 +48,8 @@ void tryField(const FieldKind& kind, SeededRandom& random, std::vector<Tally>& t
             const double margin = std::max(1e-3 * static_cast<double>(field.cellSize()), farthest * 0x1p-22);
             if (answer.numerator == 0 || reference.depthOfPassage(ray, answer) < margin) continue;
             const auto t = static_cast<double>(answer.numerator / answer.denominator);
-            // Columns have no bottom, Embree's boxes do.
-            if (ray.origin.z + t * static_cast<double>(ray.direction.z) < 0) continue;
+            // Columns have no bottom; Embree's boxes end below the lowest top.
+            if (ray.origin.z + t * static_cast<double>(ray.direction.z) < lowest) continue;
             rays.push_back(ray);
             truths.push_back(static_cast<float>(t));
         }
