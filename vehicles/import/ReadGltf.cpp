@@ -275,13 +275,14 @@ class Reader {
                                  ": a position is not a finite number; clean the mesh and export it again");
         std::vector<std::size_t> corner;
         if (primitive.indices >= 0)
-            for (const float i : values(primitive.indices, 1, place, true))
+            for (const float i : values(primitive.indices, 1, place, true)) {
+                // Before it becomes an integer: an accessor may hold anything, also negative numbers and NaN.
+                if (!(i >= 0 && i < static_cast<float>(count)))
+                    complaint_.raise(place + ": an index points past the last vertex; export it again");
                 corner.push_back(static_cast<std::size_t>(i));
+            }
         else
             for (std::size_t i = 0; i < count; ++i) corner.push_back(i);
-        for (const std::size_t i : corner)
-            if (i >= count)
-                complaint_.raise(place + ": an index points past the last vertex; export it again");
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
             if (scene_.triangles.size() >= 20'000'000)
                 complaint_.raise("it has more than 20 million triangles; reduce the mesh first");
