@@ -13,6 +13,14 @@ struct DriveSettings {
     Quality quality = Quality::medium;
     std::uint32_t cars = 60;
     double hour = 15;
+    double budgetMs = 0;        ///< time of a frame that is to be held (method mem, ours); 0: none
+    double error = 0;           ///< mean FLIP on mirrors that is to be met as cheaply as may be; 0: none
+    bool fixedQuality = false;  ///< budget or error choose a detail once, as calibrated, and it stays
+
+    /// Whether details follow from a budget or an error instead of `quality`.
+    bool governed() const {
+        return method == ReflectionMethod::mem && mem == MemVariant::ours && (budgetMs > 0 || error > 0);
+    }
 
     bool operator==(const DriveSettings&) const = default;
 };

@@ -40,22 +40,16 @@ reflection::LocalMapMethod localMethod(const ReflectionSettings& settings) {
 
 }  // namespace
 
+ReflectionDetail detailOf(const ReflectionSettings& settings) {
+    return settings.detail ? *settings.detail : detailOf(settings.quality);
+}
+
 PlanOptions planOptionsFor(const ReflectionSettings& settings) {
+    const ReflectionDetail detail = detailOf(settings);
     PlanOptions options;
-    switch (settings.quality) {
-        case Quality::low:
-            options.texelBudget = 60'000;
-            options.texelsPerPixel = 0.25f;
-            options.errorThreshold = 1;
-            break;
-        case Quality::medium:
-            break;
-        case Quality::high:
-            options.texelBudget = 500'000;
-            options.texelsPerPixel = 1;
-            options.errorThreshold = 0.25f;
-            break;
-    }
+    options.texelBudget = static_cast<std::uint64_t>(std::max(detail.texelBudget, 0.0));
+    options.texelsPerPixel = static_cast<float>(detail.texelsPerPixel);
+    options.errorThreshold = static_cast<float>(detail.errorThreshold);
     options.share = settings.shareMaps;
     options.mapsInTurn = settings.mapsInTurn;
     options.sizeClass = settings.sizeClass;
@@ -69,9 +63,7 @@ PlanOptions planOptionsFor(const ReflectionSettings& settings) {
 
 std::size_t candidateCount(const ReflectionSettings& settings) {
     if (settings.method != ReflectionMethod::mem || settings.variant == MemVariant::paper) return 2;
-    // Measured over ten places: a third map adds 0.2 dB (paper) to 0.7 dB (boulevard) to two, six add 0.4 dB
-    // to three for a fifth more time.
-    return settings.quality == Quality::low ? 2 : settings.quality == Quality::medium ? 3 : 6;
+    return static_cast<std::size_t>(std::max(1.0, std::round(detailOf(settings).candidates)));
 }
 
 reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize) {
@@ -89,7 +81,7 @@ reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int f
         request.mesh.baseCells = std::max(1, faceSize / 16);
         request.mesh.depth = faceSize >= 16 ? 3 : 0;
         request.mesh.threshold = 0.1f;
-        request.lookup.lookups = settings.quality == Quality::high ? 6 : 4;
+        request.lookup.lookups = static_cast<int>(std::max(1.0, std::round(detailOf(settings).lookups)));
     }
     return request;
 }

@@ -4,9 +4,11 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "app/frame/Detail.h"
 #include "app/frame/FrameScene.h"
 #include "app/frame/ReflectionMethod.h"
 #include "app/frame/ReflectionPlan.h"
@@ -35,8 +37,11 @@ struct ReflectionSettings {
     MapsOn mapsOn = MapsOn::automatic;
     std::size_t gpuMapBytes =
         std::size_t{512} << 20;  ///< for reference maps on the GPU at most; those in use take turns there
+    std::optional<ReflectionDetail> detail = std::nullopt;  ///< takes the place of what `quality` stands for
 };
 
+/// The detail in use: the settings' own, else their quality's.
+ReflectionDetail detailOf(const ReflectionSettings& settings);
 /// What the settings mean in numbers; kept in one place so that benches and panels show the same.
 PlanOptions planOptionsFor(const ReflectionSettings& settings);
 /// Mesh, lookup and candidate count of a local map of this size.

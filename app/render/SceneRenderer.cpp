@@ -31,9 +31,9 @@ constexpr int viewBeams = 1024;
 constexpr int cubeBeams = 512;
 /// Cubes are seen from inside vehicles, close to the road.
 constexpr float cubeNear = 0.05f;
-/// Pixels by which a level of detail may be off on screen.
-constexpr float levelTolerance = 2.5f;
-/// The same for plants: where a leaf sits does not show, only how dense and how wide they are.
+/// Texels by which a vehicle's level of detail may be off in a cube.
+constexpr float cubeVehicleTolerance = 2.5f;
+/// Pixels for plants: where a leaf sits does not show, only how dense and how wide they are.
 constexpr float foliageTolerance = 10;
 
 float pixelsPerRadian(const View& view) {
@@ -161,6 +161,7 @@ struct SceneRenderer::Impl {
     std::vector<vehicles::SignalColour> signalColours;
     std::vector<std::uint32_t> chosen;
     RenderCounters counters;
+    DrawingDetail detail;
 };
 
 SceneRenderer::SceneRenderer(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
@@ -177,31 +178,36 @@ void SceneRenderer::prepare(const FrameScene& scene) {
     impl_->signalColours = scene.signalColours;
 }
 
+void SceneRenderer::setDetail(const DrawingDetail& detail) {
+    impl_->detail = detail;
+}
+
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
                              std::uint32_t framebuffer) {
     Impl& my = *impl_;
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
-    PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
-    pass.skyline = my.skylineFor(pass);
-
     my.updateShadow();
     setDrawState();
-    my.viewTarget.begin(view.size);
+    my.viewTarget.begin(view.size, my.detail.scale);
+    const float drawnShare = static_cast<float>(my.viewTarget.drawn().y) / static_cast<float>(view.size.y);
+    PassView pass(view.eye, view.clipFromView * view.viewFromWorld, drawnShare * pixelsPerRadian(view));
+    pass.skyline = my.skylineFor(pass);
     my.setFrame(pass);
 
     my.chosen.clear();
     for (const VisibleVehicle& v : my.visible(pass)) my.chosen.push_back(v.index);
     const VehiclePass::Counts vehicles =
         my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
-                            {&reflections.textures, reflections.slots, reflections.mirrored}, levelTolerance);
+                            {&reflections.textures, reflections.slots, reflections.mirrored},
+                            static_cast<float>(my.detail.vehicleTolerance));
     const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
     const std::uint32_t lampCalls = my.signalLamps.draw(pass, PassTarget::view, my.signalColours);
     const std::uint32_t shadowCalls =
         my.options.shadows ? my.vehicleShadows.draw(pass, my.vehiclePass.geometry(), my.poses, my.chosen) : 0;
     my.drawSky(pass, PassTarget::view);
 
-    my.viewTarget.finish(framebuffer);
+    my.viewTarget.finish(framebuffer, my.detail.antialiasing);
 
     my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + lampCalls + shadowCalls + 1;
     my.counters.triangles = vehicles.triangles + city.triangles;
@@ -233,7 +239,7 @@ void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTar
                     continue;
                 if (pass.sees(my.vehiclePass.boundsOf(pose))) my.chosen.push_back(i);
             }
-            my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, levelTolerance);
+            my.vehiclePass.draw(pass, PassTarget::cube, my.poses, my.chosen, {}, cubeVehicleTolerance);
         }
         if (content.city) my.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
         if (content.vehicles) my.signalLamps.draw(pass, PassTarget::cube, my.signalColours);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "app/frame/Detail.h"
 #include "app/frame/FrameScene.h"
 #include "app/frame/SunMap.h"
 #include "city/model/CityModel.h"
@@ -49,6 +50,9 @@ class SceneRenderer final : public reflection::SceneDrawer {
 
     /// Takes over this frame's vehicles, lights and signal states. Call once a frame, before any drawing.
     void prepare(const FrameScene& scene);
+
+    /// Of all views from now on. Costs nothing to change.
+    void setDetail(const DrawingDetail& detail);
 
     /// Draws one of the prepared scene's views, tone mapped, into a framebuffer (0: the window), sRGB-encoded
     /// 8 bit.

@@ -2,6 +2,10 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
 namespace app {
 
 namespace gl = reflection::gl;
@@ -13,7 +17,8 @@ ViewTarget::ViewTarget(Antialiasing antialiasing)
     fxaa_ = gl::Program::fromFiles({"fullscreen.vert", "fxaa.frag"});
 }
 
-void ViewTarget::begin(glm::ivec2 size) {
+void ViewTarget::begin(glm::ivec2 size, double scale) {
+    drawn_ = glm::clamp(glm::ivec2(glm::round(glm::dvec2(size) * scale)), glm::ivec2(1), size);
     if (size_ != size) {
         size_ = size;
         if (antialiasing_ == Antialiasing::msaa4) {
@@ -34,30 +39,32 @@ void ViewTarget::begin(glm::ivec2 size) {
                 .attach(GL_DEPTH_ATTACHMENT, depth_.name());
             smoothTarget_.requireComplete("antialiasing");
         }
+        if (antialiasing_ == Antialiasing::msaa4) smooth_ = {};
     }
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
-    glViewport(0, 0, size.x, size.y);
+    glViewport(0, 0, drawn_.x, drawn_.y);
     glClearDepth(0);
     glClear(GL_DEPTH_BUFFER_BIT);  // every pixel gets a colour, the sky's at least
 }
 
-void ViewTarget::mendEdges() {
+void ViewTarget::mendEdges(float antialiasing) {
     glCopyImageSubData(colour_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, smooth_.name(), GL_TEXTURE_2D, 0, 0, 0, 0,
-                       size_.x, size_.y, 1);
+                       drawn_.x, drawn_.y, 1);
     glBindFramebuffer(GL_FRAMEBUFFER, smoothTarget_.name());
     glDisable(GL_CULL_FACE);
     colour_.bind(3);
     nothing_.bind();
     // Marks take the scene's depth buffer, which has served: depth 1 is the near plane, where nothing is
     // drawn.
-    findEdges_.set("last", size_ - 1);
+    findEdges_.set("last", drawn_ - 1);
+    findEdges_.set("antialiasing", antialiasing);
     findEdges_.use();
     glDepthFunc(GL_ALWAYS);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     fxaa_.set("texel", 1.f / glm::vec2(size_));
-    fxaa_.set("last", size_ - 1);
+    fxaa_.set("last", drawn_ - 1);
     fxaa_.use();
     glDepthFunc(GL_EQUAL);
     glDepthMask(GL_FALSE);
@@ -66,11 +73,26 @@ void ViewTarget::mendEdges() {
     glDepthFunc(GL_GEQUAL);
 }
 
-void ViewTarget::finish(std::uint32_t framebuffer) {
-    const bool mended = antialiasing_ == Antialiasing::fxaa;
-    if (mended) mendEdges();
-    glBlitNamedFramebuffer((mended ? smoothTarget_ : target_).name(), framebuffer, 0, 0, size_.x, size_.y, 0,
-                           0, size_.x, size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+void ViewTarget::finish(std::uint32_t framebuffer, double antialiasing) {
+    // An edge's contrast is at most 1, and an eighth of it is the threshold.
+    const bool mended = antialiasing_ == Antialiasing::fxaa && antialiasing > 0.125;
+    if (mended) mendEdges(static_cast<float>(antialiasing));
+    std::uint32_t source = (mended ? smoothTarget_ : target_).name();
+    const bool stretched = drawn_ != size_;
+    if (stretched && antialiasing_ == Antialiasing::msaa4) {
+        // Several samples cannot be stretched.
+        if (smooth_.name() == 0) {
+            smooth_ = gl::Texture::image2D(GL_RGBA8, size_.x, size_.y);
+            smoothTarget_ = gl::Framebuffer::create();
+            smoothTarget_.attach(GL_COLOR_ATTACHMENT0, smooth_.name());
+            smoothTarget_.requireComplete("a view that is stretched");
+        }
+        glBlitNamedFramebuffer(source, smoothTarget_.name(), 0, 0, drawn_.x, drawn_.y, 0, 0, drawn_.x,
+                               drawn_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        source = smoothTarget_.name();
+    }
+    glBlitNamedFramebuffer(source, framebuffer, 0, 0, drawn_.x, drawn_.y, 0, 0, size_.x, size_.y,
+                           GL_COLOR_BUFFER_BIT, stretched ? GL_LINEAR : GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 

@@ -17,20 +17,26 @@ class ViewTarget {
   public:
     explicit ViewTarget(Antialiasing antialiasing);
 
-    /// Makes the target current with depth cleared, at a size; allocates when the size changed.
-    void begin(glm::ivec2 size);
-    /// Antialiases into the caller's framebuffer, which is current afterwards.
-    void finish(std::uint32_t framebuffer);
+    /// Makes the target current with depth cleared, at a size; allocates when the size changed. Of it, the
+    /// share `scale` a side (0..1) is drawn, one pixel at least: see `drawn`.
+    void begin(glm::ivec2 size, double scale = 1);
+    /// Pixels drawn since the last `begin`.
+    glm::ivec2 drawn() const { return drawn_; }
+    /// Antialiases into the caller's framebuffer, stretched to the view's size; it is current afterwards.
+    /// `antialiasing`: see DrawingDetail.
+    void finish(std::uint32_t framebuffer, double antialiasing = 1);
 
   private:
-    void mendEdges();
+    void mendEdges(float antialiasing);
 
     Antialiasing antialiasing_;
     glm::ivec2 size_{0};
+    glm::ivec2 drawn_{0};
     reflection::gl::Texture colour_;
     reflection::gl::Texture depth_;
     reflection::gl::Framebuffer target_;
-    reflection::gl::Texture smooth_;  ///< fxaa: the image with its edges mended
+    reflection::gl::Texture smooth_;  ///< fxaa: the image with its edges mended; msaa: with one sample,
+                                      ///< to be stretched
     reflection::gl::Framebuffer smoothTarget_;
     reflection::gl::Program findEdges_;
     reflection::gl::Program fxaa_;

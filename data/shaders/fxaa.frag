@@ -4,8 +4,10 @@
 // goes on computing what is discarded, but skips blocks of pixels that fail an early depth test.
 layout(binding = 3) uniform sampler2D image;
 uniform vec2 texel;  // 1 / size
-uniform ivec2 last;  // size - 1
-#ifndef FIND
+uniform ivec2 last;  // the last pixel drawn
+#ifdef FIND
+uniform float antialiasing;  // 1: all edges, less: of more contrast
+#else
 layout(location = 0) out vec4 colourOut;
 #endif
 
@@ -14,7 +16,7 @@ const float edgeThresholdDark = 0.0312;  // absolute
 const int searchSteps = 6;
 const float searchStride[6] = float[6](1.0, 1.5, 2.0, 2.0, 4.0, 8.0);
 
-float luma(vec2 at) { return dot(textureLod(image, at, 0.0).rgb, vec3(0.299, 0.587, 0.114)); }
+float luma(vec2 at) { return dot(textureLod(image, min(at, (vec2(last) + 0.5) * texel), 0.0).rgb, vec3(0.299, 0.587, 0.114)); }
 
 // Unfiltered: several times cheaper in software. Outside the image, its border.
 float lumaAt(ivec2 at) { return dot(texelFetch(image, clamp(at, ivec2(0), last), 0).rgb, vec3(0.299, 0.587, 0.114)); }
@@ -30,7 +32,7 @@ void main() {
     float lowest = min(min(min(n, s), min(e, w)), m);
     float range = highest - lowest;
 #ifdef FIND
-    if (range < max(edgeThresholdDark, highest * edgeThreshold)) discard;
+    if (range * antialiasing < max(edgeThresholdDark, highest * edgeThreshold)) discard;
 #else
     float ne = lumaAt(here + ivec2(1, 1));
     float sw = lumaAt(here - ivec2(1, 1));

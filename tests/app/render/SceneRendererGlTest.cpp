@@ -97,6 +97,38 @@ TEST_F(SceneRendererGlTest, everyAntialiasingShowsTheSamePicture) {
     }
 }
 
+TEST_F(SceneRendererGlTest, aSmallerPictureIsStretchedOverTheWholeView) {
+    const city::CityModel city = test::boxCity();
+    const View view = lookAt({-14, -5, 3}, {10, -2, 1}, 1.0, size_);
+    for (Antialiasing antialiasing : {Antialiasing::none, Antialiasing::fxaa, Antialiasing::msaa4}) {
+        RenderOptions options;
+        options.antialiasing = antialiasing;
+        SceneRenderer renderer(city, models_, options);
+        const Image8 full = draw(renderer, view);
+        const auto difference = [&](const DrawingDetail& detail) {
+            renderer.setDetail(detail);
+            const Image8 image = draw(renderer, view);
+            double sum = 0;
+            for (std::size_t i = 0; i < full.rgba.size(); ++i)
+                sum += std::abs(int(image.rgba[i]) - int(full.rgba[i]));
+            return sum / static_cast<double>(full.rgba.size());
+        };
+        const double three = difference({0.75, 1, 2.5}), one = difference({0.25, 1, 2.5});
+        EXPECT_GT(three, 0);
+        // A picture that is off by a pixel or by its border would differ everywhere.
+        EXPECT_LT(three, 1.5);
+        EXPECT_LT(one, 3.5);
+        EXPECT_LT(three, one);
+        EXPECT_EQ(difference({}), 0) << "the full picture does not come back";
+        EXPECT_GT(difference({1e-9, 1, 2.5}), 3.5);  // one pixel: one colour
+        if (antialiasing == Antialiasing::fxaa) {
+            const double none = difference({1, 0.125, 2.5}), half = difference({1, 0.4, 2.5});
+            EXPECT_GT(half, 0);
+            EXPECT_GT(none, half);
+        }
+    }
+}
+
 TEST_F(SceneRendererGlTest, vehiclesMirrorTheirMapsAndPlainOnesDoNot) {
     // A map of pure green light: it must show on the car that has it, and only there.
     const city::CityModel city = test::boxCity();

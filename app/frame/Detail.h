@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "app/frame/ReflectionMethod.h"
+
+namespace app {
+
+/// How accurate reflections are, in plain numbers; the three named qualities are points among them. Larger
+/// costs more, but for `errorThreshold`, where smaller does.
+struct ReflectionDetail {
+    double texelBudget = 80'000;  ///< texels of local maps built a frame
+    double texelsPerPixel = 0.5;  ///< face size wanted for each pixel of a vehicle's diameter
+    double errorThreshold = 0.5;  ///< pixels of shift of a reflected feature that are let stand
+    double candidates = 3;        ///< reference maps asked for a texel; whole numbers count
+    double lookups = 4;           ///< of refining a hit; whole numbers count
+
+    bool operator==(const ReflectionDetail&) const = default;
+};
+
+/// How accurately a view is drawn.
+struct DrawingDetail {
+    /// Side of the picture that is drawn over that of the view, (0, 1]; it is stretched afterwards.
+    double scale = 1;
+    /// 1: all edges that antialiasing after the fact finds are mended; less: those of so much the greater
+    /// contrast; at an eighth or below none, and the pass is left out. Nothing else depends on it.
+    double antialiasing = 1;
+    /// Pixels by which a vehicle's level of detail may be off.
+    double vehicleTolerance = 2.5;
+
+    bool operator==(const DrawingDetail&) const = default;
+};
+
+struct Detail {
+    ReflectionDetail reflection;
+    DrawingDetail drawing;
+
+    bool operator==(const Detail&) const = default;
+};
+
+/// The numbers that a named quality stands for.
+ReflectionDetail detailOf(Quality quality);
+
+/// Between two details: 0 gives `a`, 1 gives `b`, both exactly. What multiplies costs is blended by ratio,
+/// whole numbers in small steps as well, to be rounded where they are used.
+Detail blend(const Detail& a, const Detail& b, double t);
+
+/// What `now` gives up against `full`, for people: "half the texels, drawn at 80%"; empty where nothing.
+std::string givenUp(const Detail& full, const Detail& now);
+
+}  // namespace app

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "app/frame/Detail.h"
+
+namespace app {
+
+/// A detail, and what it was measured to cost and to lose.
+struct Rung {
+    Detail detail;
+    double drawingMs = 0;     ///< frame without reflections
+    double reflectionMs = 0;  ///< planning, building, uploading
+    double error = 0;         ///< mean FLIP over mirroring pixels, against re-rendering drawn in full
+    double pictureError = 0;  ///< mean FLIP over all others
+
+    double ms() const { return drawingMs + reflectionMs; }
+    /// What is to be kept small: a mirroring pixel in the mean counts as one of the street.
+    double loss() const { return error + pictureError; }
+};
+
+/// Rungs from the finest to the cheapest: each costs less and loses more than the one before. In between,
+/// everything is blended.
+class DetailLadder {
+  public:
+    DetailLadder() = default;
+    /// Keeps the Pareto front of what was measured: a rung that costs no less than one that loses no more is
+    /// left out. Rungs with numbers that are not finite too.
+    explicit DetailLadder(std::vector<Rung> measured);
+
+    std::span<const Rung> rungs() const { return rungs_; }
+    bool empty() const { return rungs_.empty(); }
+    /// The rung at a position 0 .. size - 1, clamped. Precondition: not empty.
+    Rung at(double position) const;
+    double last() const { return rungs_.empty() ? 0 : static_cast<double>(rungs_.size() - 1); }
+    /// The cheapest position whose error is at most this; the finest where none is.
+    double positionForError(double error) const;
+    /// The finest position that costs at most this, as measured; the cheapest where none does.
+    double positionForMs(double ms) const;
+
+  private:
+    std::vector<Rung> rungs_;
+};
+
+/// One number of a detail.
+enum class Knob : std::uint8_t {
+    texelBudget,
+    texelsPerPixel,
+    errorThreshold,
+    candidates,
+    lookups,
+    scale,
+    antialiasing,
+    vehicleTolerance,
+};
+inline constexpr std::array<std::string_view, 8> knobNames{
+    "texel budget", "texels a pixel", "error threshold", "candidates",
+    "lookups",      "scale",          "antialiasing",    "vehicle tolerance"};
+double& valueOf(Detail& detail, Knob knob);
+
+/// A knob turned down alone, from the finest detail, and what that was measured to save and to lose.
+struct Trial {
+    Knob knob = Knob::scale;
+    double value = 0;
+    double savedMs = 0;
+    double lost = 0;
+};
+
+/// The order in which to give things up: from the finest detail on, always that next step of a knob which
+/// loses least for each millisecond that it saves. Trials of one knob come from fine to coarse. What saves
+/// less than `leastMs` more than the step before is not worth a rung: noise would decide. The finest comes
+/// first.
+std::vector<Detail> orderOfGivingUp(const Detail& finest, std::span<const Trial> trials, double leastMs);
+
+}  // namespace app
