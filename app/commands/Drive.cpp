@@ -3,18 +3,25 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
 
+#include "app/commands/Calibration.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/report/Timing.h"
 
 namespace app {
 
-Drive::Drive(const Scene& scene, const Options& options)
+Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
     : scene_(&scene),
       seed_(options.seed),
       mapsOn_(options.mapsOn),
       gpuMapBytes_(options.gpuMapBytes()),
-      settings_{options.method, options.mem, options.quality, options.cars.front(), options.hour},
+      resolution_(options.resolution),
+      rendererName_(std::move(renderer)),
+      settings_{options.method, options.mem,      options.quality, options.cars.front(),
+                options.hour,   options.budgetMs, options.error,   options.fixedQuality},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       renderer_(std::make_unique<SceneRenderer>(scene.city, scene.models, renderOptions())),
       lighting_(scene.lighting) {
@@ -22,8 +29,61 @@ Drive::Drive(const Scene& scene, const Options& options)
     preparation_.quiet = options.quiet;
 }
 
-bool Drive::startReflecting(const CarryOn& carryOn) {
-    return settings_.method == ReflectionMethod::none || reflectIn(lighting_, carryOn);
+bool Drive::startReflecting(const CarryOn& carryOn, const CarryOn& calibrating) {
+    if (settings_.method != ReflectionMethod::none && !reflectIn(lighting_, carryOn)) return false;
+    govern(calibrating);
+    return true;
+}
+
+void Drive::govern(const CarryOn& calibrating) {
+    governor_.reset();
+    renderer_->setDetail({});
+    if (!engine_ || !settings_.governed()) return;
+    if (!ladder_) {
+        CalibrationOptions options;
+        options.resolution = resolution_;
+        options.antialiasing = renderOptions().antialiasing;
+        options.mapsOn = mapsOn_;
+        options.gpuMapBytes = gpuMapBytes_;
+        options.renderer = rendererName_;
+        options.quiet = preparation_.quiet;
+        options.carryOn = calibrating;
+        const Stopwatch watch;
+        Calibration calibration = calibrate(*scene_, lighting_, prepared_, *renderer_, options);
+        if (!calibration.complete || calibration.ladder.empty()) {
+            spdlog::warn("no calibration, no budget: quality stays {}", nameOf(settings_.quality));
+            settings_.budgetMs = settings_.error = 0;
+            return;
+        }
+        ladder_ = std::move(calibration.ladder);
+        if (calibration.fromCache)
+            spdlog::info("calibration of this machine and city, from {}:\n{}", calibration.file.string(),
+                         describe(*ladder_));
+        else
+            spdlog::info("calibrated this machine and city in {:.1f} s, kept in {}:\n{}",
+                         watch.elapsed() / 1000,
+                         calibration.file.empty() ? "memory" : calibration.file.string(), describe(*ladder_));
+    }
+    DetailLadder ladder = *ladder_;
+    double budget = settings_.budgetMs;
+    if (settings_.error > 0 || settings_.fixedQuality) {
+        // One rung: there is nowhere to go.
+        const double position = settings_.error > 0 ? ladder.positionForError(settings_.error)
+                                                    : ladder.positionForMs(settings_.budgetMs);
+        const Rung chosen = ladder.at(position);
+        if (settings_.error > 0 && chosen.error > settings_.error)
+            spdlog::warn("the finest detail has an error of {:.4f}: {} cannot be met", chosen.error,
+                         settings_.error);
+        if (settings_.budgetMs > 0 && chosen.ms() > settings_.budgetMs)
+            spdlog::warn("the lowest detail takes {:.1f} ms, more than the budget of {:.1f} ms", chosen.ms(),
+                         settings_.budgetMs);
+        const std::string less = givenUp(ladder.rungs().front().detail, chosen.detail);
+        spdlog::info("chosen: {:.1f} ms a frame, FLIP {:.4f} on mirrors{}{}", chosen.ms(), chosen.error,
+                     less.empty() ? "" : "; given up: ", less);
+        ladder = DetailLadder({chosen});
+        budget = std::numeric_limits<double>::infinity();
+    }
+    governor_.emplace(std::move(ladder), budget);
 }
 
 bool Drive::reflectIn(const Lighting& lighting, const CarryOn& carryOn) {
@@ -92,6 +152,19 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     FrameStats stats;
     frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view});
     finishDrawing();
+    if (governor_) {
+        const Rung rung = governor_->ladder().at(governor_->position());
+        renderer_->setDetail(rung.detail.drawing);
+        ReflectionSettings reflecting = reflectionSettings();
+        reflecting.detail = rung.detail.reflection;
+        engine_->configure(reflecting);
+        stats.governed = {true,
+                          governor_->position(),
+                          governor_->ladder().last(),
+                          governor_->predictedMs(),
+                          rung.error,
+                          ladder_ ? givenUp(ladder_->rungs().front().detail, rung.detail) : std::string()};
+    }
     const Stopwatch watch;
     renderer_->prepare(frame_);
     reflections_ = {};
@@ -109,16 +182,23 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     finishDrawing();
     stats.frameMs = watch.elapsed();
     stats.drawn = renderer_->counters();
+    if (governor_) {
+        governor_->observe({stats.frameMs, stats.reflectionMs, stats.reflections.visible});
+        // With one rung nothing was to be held.
+        if (const auto news = governor_->news(); news && governor_->ladder().rungs().size() > 1)
+            spdlog::info("{}", *news);
+    }
     return stats;
 }
 
-bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn) {
+bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const CarryOn& calibrating) {
     const DriveSettings old = settings_;
     settings_ = wanted;
     if (wanted.cars != old.cars) traffic_ = startTraffic(*scene_, seed_, wanted.cars);
     if (wanted.quality != old.quality) {
         renderer_.reset();
         renderer_ = std::make_unique<SceneRenderer>(scene_->city, scene_->models, renderOptions());
+        ladder_.reset();
     }
     const bool relit = wanted.hour != old.hour;
     const Lighting lighting =
@@ -139,6 +219,10 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn) {
         engine_->configure(reflectionSettings());
         lendRays();
     }
+    const auto asked = [](const DriveSettings& s) { return std::tuple(s.budgetMs, s.error, s.fixedQuality); };
+    if (settings_.governed() != (governor_ != std::nullopt) || asked(settings_) != asked(old) ||
+        (governor_ && !ladder_))
+        govern(calibrating);
     return finished;
 }
 

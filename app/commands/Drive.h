@@ -2,16 +2,29 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/DriveSettings.h"
+#include "app/frame/Governor.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/raytrace/RayTracer.h"
 #include "app/render/SceneRenderer.h"
 
 namespace app {
+
+/// How a budget or an error was met in a frame.
+struct Governed {
+    bool active = false;
+    double position = 0;     ///< on the ladder, 0: finest
+    double last = 0;         ///< its cheapest position
+    double predictedMs = 0;  ///< of this frame's detail at the load so far
+    double error = 0;        ///< mean FLIP on mirrors that the calibration found for this detail
+    std::string givenUp;     ///< against the finest; empty: nothing
+};
 
 /// What one frame took and did.
 struct FrameStats {
@@ -19,6 +32,7 @@ struct FrameStats {
     double reflectionMs = 0;  ///< the reflections' share: planning, building, uploading
     ReflectionCounters reflections;
     RenderCounters drawn;
+    Governed governed;
 };
 
 /// The one way of a frame: traffic -> FrameScene -> reflections -> picture. Needs an OpenGL context current
@@ -26,11 +40,14 @@ struct FrameStats {
 /// `startReflecting`.
 class Drive {
   public:
-    Drive(const Scene& scene, const Options& options);
+    /// `renderer`: GL_RENDERER, for which calibrations are kept.
+    Drive(const Scene& scene, const Options& options, std::string renderer);
 
     /// Heightfield, reference maps and whatever else the method needs. False: ended by `carryOn` or an
     /// interrupt; what is finished stays in the cache.
-    bool startReflecting(const CarryOn& carryOn = {});
+    /// `calibrating` is asked while a budget or an error needs a calibration that is not in the cache; ended,
+    /// the named quality stays.
+    bool startReflecting(const CarryOn& carryOn = {}, const CarryOn& calibrating = {});
 
     /// Simulates on, in the traffic's fixed steps; what is left of a step is kept for the next call.
     void advance(double seconds);
@@ -40,12 +57,14 @@ class Drive {
     /// Takes over what changed: other cars start the traffic anew, other quality the renderer, another hour
     /// asks for other reference maps. False: those were ended by `carryOn` or an interrupt, and hour and
     /// method stay as they were.
-    bool change(const DriveSettings& wanted, const CarryOn& carryOn = {});
+    bool change(const DriveSettings& wanted, const CarryOn& carryOn = {}, const CarryOn& calibrating = {});
 
     const vehicles::Traffic& traffic() const { return traffic_; }
     const FrameScene& frame() const { return frame_; }
     /// What reflects; nothing while the method is `none` and no other was used before.
     const ReflectionEngine* engine() const { return engine_.get(); }
+    /// What goes up and down the ladder; nothing unless a budget or an error is to be met.
+    const Governor* governor() const { return governor_ ? &*governor_ : nullptr; }
     /// Slots of the last frame's vehicles, empty for plain paint.
     const VehicleReflections& reflections() const { return reflections_; }
 
@@ -56,11 +75,16 @@ class Drive {
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
     bool reflectIn(const Lighting& lighting, const CarryOn& carryOn);
 
+    /// Starts or ends governing, as the settings say; calibrates when needed.
+    void govern(const CarryOn& calibrating);
+
     const Scene* scene_;
     std::uint64_t seed_;
     PreparationOptions preparation_;
     MapsOn mapsOn_;
     std::size_t gpuMapBytes_;
+    glm::ivec2 resolution_;
+    std::string rendererName_;
     DriveSettings settings_;
     vehicles::Traffic traffic_;
     std::unique_ptr<SceneRenderer> renderer_;
@@ -68,6 +92,8 @@ class Drive {
     std::unique_ptr<RayTracer> rays_;  ///< made when first needed
     PreparedReflections prepared_;
     std::unique_ptr<ReflectionEngine> engine_;
+    std::optional<Governor> governor_;
+    std::optional<DetailLadder> ladder_;  ///< of this quality's renderer
     VehicleReflections reflections_;
     FrameScene frame_;
     double lead_ = 0;  ///< seconds asked for and not yet simulated

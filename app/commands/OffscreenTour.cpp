@@ -72,7 +72,7 @@ int runOffscreenTour(const Options& options) {
     const OffscreenContext context;
     spdlog::info("drawing without a window on {}", context.renderer());
     const Scene scene = loadScene(options);
-    Drive drive(scene, options);
+    Drive drive(scene, options, context.renderer());
     TourReport report(options, context.renderer());
     if (!drive.startReflecting()) {
         spdlog::warn("interrupted before the first picture: the reference maps that are finished are kept");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 #include <sstream>
+#include <string_view>
 
 namespace app {
 
@@ -138,6 +139,36 @@ void addTraffic(CLI::App& parser, Options& o, unsigned groups) {
         ->check(between(0.5, 60, "metres"));
 }
 
+/// "16ms", "16 ms" or "16".
+void parseBudget(const std::string& text, double& target) {
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, target);
+    std::string_view unit(rest, static_cast<std::size_t>(end - rest));
+    while (unit.starts_with(' ')) unit.remove_prefix(1);
+    if (error != std::errc() || !(unit.empty() || unit == "ms") || !(target >= 0.1 && target <= 10000))
+        throw CLI::ValidationError("--budget",
+                                   "'" + text + "' is not a time from 0.1 to 10000 milliseconds, like 16ms");
+}
+
+void addBudget(CLI::App& parser, Options& o) {
+    auto* budget = parser
+                       .add_option_function<std::string>(
+                           "--budget", [&o](const std::string& text) { parseBudget(text, o.budgetMs); },
+                           "time of a frame to be held: detail follows the load (method mem); calibrates "
+                           "once, some seconds")
+                       ->type_name("MS");
+    parser
+        .add_option("--error", o.error,
+                    "mean FLIP on mirrors, 0.001 to 1, to be met with the cheapest detail (method mem)")
+        ->type_name("FLIP")
+        ->check(between(0.001, 1, ""))
+        ->excludes(budget);
+    parser.add_flag(
+        "--fixed-quality", o.fixedQuality,
+        "nothing adapts while it runs, for runs that can be repeated: --budget and --error choose "
+        "by the calibration alone");
+}
+
 /// What the command line said and `Options` has no place for.
 struct Spellings {
     std::optional<std::string> city;        ///< CITY
@@ -173,6 +204,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
     if (groups & qualityOption)
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
+    if (groups & budgetOptions) addBudget(parser, o);
     if (groups & mapsOnOptions) {
         addNamed(parser, "--maps-on", o.mapsOn, mapsOnNames,
                  "where mem keeps reference maps and makes local maps (default auto: gpu, but cpu where "

@@ -32,6 +32,9 @@ struct Options {
     Quality quality = Quality::medium;
     MapsOn mapsOn = MapsOn::automatic;
     double gpuMapMegabytes = 512;      ///< 2^20 bytes, for reference maps on the graphics card
+    double budgetMs = 0;               ///< --budget; 0: none was named
+    double error = 0;                  ///< --error; 0: none was named
+    bool fixedQuality = false;         ///< --fixed-quality
     double cell = 1;                   ///< metres, side of a heightfield cell
     double hour = 15;                  ///< local solar time
     glm::ivec2 resolution{1280, 720};  ///< pixels
@@ -79,6 +82,8 @@ enum OptionGroup : unsigned {
     htmlOptions = 1u << 17,       ///< --html
     rayOptions = 1u << 18,        ///< --samples --bounces
     shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
+
+    budgetOptions = 1u << 20,  ///< --budget --error --fixed-quality
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

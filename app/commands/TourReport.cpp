@@ -1,6 +1,7 @@
 #include "app/commands/TourReport.h"
 
 #include <algorithm>
+#include <numeric>
 #include <ostream>
 #include <type_traits>
 #include <utility>
@@ -18,6 +19,21 @@ std::string methodOf(const DriveSettings& settings) {
     const std::string method(nameOf(settings.method));
     return settings.method == ReflectionMethod::mem && settings.mem == MemVariant::paper ? method + " paper"
                                                                                          : method;
+}
+
+/// Index of the median.
+std::size_t middleOf(const std::vector<double>& values) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    std::nth_element(order.begin(), middle, order.end(),
+                     [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+    return *middle;
+}
+
+double shareWithin(const std::vector<double>& values, double most) {
+    const auto within = std::count_if(values.begin(), values.end(), [&](double v) { return v <= most; });
+    return static_cast<double>(within) / static_cast<double>(values.size());
 }
 
 }  // namespace
@@ -43,6 +59,13 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
     raise(stretch->localMapBytes, stats.reflections.localMapBytes);
     raise(stretch->referenceMapBytes, stats.reflections.referenceMapBytes);
     raise(stretch->referenceMapGpuBytes, stats.reflections.referenceMapGpuBytes);
+    if (stats.governed.active) {
+        stretch->positions.push_back(stats.governed.position);
+        stretch->predictedMs.push_back(stats.governed.predictedMs);
+        stretch->errors.push_back(stats.governed.error);
+        stretch->givenUp.push_back(stats.governed.givenUp);
+        stretch->last = stats.governed.last;
+    }
     raise(stretch->bytesPerTexel, stats.reflections.referenceBytesPerTexel);
     ++frames_;
 }
@@ -52,6 +75,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
     std::vector<std::vector<std::string>> table{{"method, quality, cars, size, hour", "frames", "ms: min",
                                                  "median", "max", "reflections", "maps a frame",
                                                  "local maps"}};
+    std::string governed;
     const Stretch* most = nullptr;  // memory
     for (const Stretch& stretch : stretches_) {
         const DriveSettings& settings = stretch.settings;
@@ -65,24 +89,48 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                          std::to_string(frame.n), fixed(frame.min, 1), fixed(frame.median, 1),
                          fixed(frame.max, 1), fixed(reflection.median, 1), fixed(mapsPerFrame, 1),
                          byteSize(static_cast<double>(stretch.localMapBytes))});
-        results.add({{"method", methodOf(settings)},
-                     {"quality", nameOf(settings.quality)},
-                     {"city", options_.city},
-                     {"cars", settings.cars},
-                     {"width", stretch.size.x},
-                     {"height", stretch.size.y},
-                     {"hour", settings.hour},
-                     {"frame_ms", toJson(frame)},
-                     {"reflection_ms", toJson(reflection)},
-                     {"maps_updated_per_frame", mapsPerFrame},
-                     {"maps_on", stretch.referenceMapGpuBytes > 0 ? "gpu" : "cpu"},
-                     {"texture_bytes", stretch.localMapBytes + stretch.referenceMapGpuBytes},
-                     {"reference_map_bytes", stretch.referenceMapBytes},
-                     {"reference_map_gpu_bytes", stretch.referenceMapGpuBytes},
-                     {"reference_map_bytes_per_texel", stretch.bytesPerTexel}});
+        nlohmann::ordered_json row{{"method", methodOf(settings)},
+                                   {"quality", nameOf(settings.quality)},
+                                   {"city", options_.city},
+                                   {"cars", settings.cars},
+                                   {"width", stretch.size.x},
+                                   {"height", stretch.size.y},
+                                   {"hour", settings.hour},
+                                   {"frame_ms", toJson(frame)},
+                                   {"reflection_ms", toJson(reflection)},
+                                   {"maps_updated_per_frame", mapsPerFrame},
+                                   {"maps_on", stretch.referenceMapGpuBytes > 0 ? "gpu" : "cpu"},
+                                   {"texture_bytes", stretch.localMapBytes + stretch.referenceMapGpuBytes},
+                                   {"reference_map_bytes", stretch.referenceMapBytes},
+                                   {"reference_map_gpu_bytes", stretch.referenceMapGpuBytes},
+                                   {"reference_map_bytes_per_texel", stretch.bytesPerTexel}};
+        if (!stretch.positions.empty()) {
+            const std::size_t middle = middleOf(stretch.positions);
+            const double within = shareWithin(stretch.frameMs, 1.25 * settings.budgetMs);
+            row["governor"] = {{"budget_ms", settings.budgetMs},
+                               {"error_asked", settings.error},
+                               {"fixed_quality", settings.fixedQuality},
+                               {"position", stretch.positions[middle]},
+                               {"last_position", stretch.last},
+                               {"predicted_ms", timingOf(stretch.predictedMs).median},
+                               {"predicted_flip", stretch.errors[middle]},
+                               {"given_up", stretch.givenUp[middle]}};
+            governed += (settings.budgetMs > 0 ? "budget of " + fixed(settings.budgetMs, 1) + " ms: "
+                                               : "error of " + fixed(settings.error, 4) + ": ") +
+                        "median frame " + fixed(frame.median, 1) + " ms, predicted " +
+                        fixed(timingOf(stretch.predictedMs).median, 1) + " ms, FLIP " +
+                        fixed(stretch.errors[middle], 4) + " on mirrors (calibrated)";
+            if (settings.budgetMs > 0) {
+                row["governor"]["within_125_percent"] = within;
+                governed += ", " + fixed(100 * within, 0) + "% of frames within +25%";
+            }
+            governed += "; given up in the middle of it: " +
+                        (stretch.givenUp[middle].empty() ? "nothing" : stretch.givenUp[middle]) + "\n";
+        }
+        results.add(std::move(row));
         if (most == nullptr || stretch.referenceMapBytes >= most->referenceMapBytes) most = &stretch;
     }
-    if (!stretches_.empty()) out << formatTable(table);
+    if (!stretches_.empty()) out << formatTable(table) << governed;
     if (most != nullptr && most->referenceMapBytes > 0)
         out << "reference maps: " << byteSize(static_cast<double>(most->referenceMapBytes)) << ", "
             << fixed(most->bytesPerTexel, 2) << " bytes a texel for colour and distance; "

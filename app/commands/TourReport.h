@@ -33,6 +33,9 @@ class TourReport {
         std::uint64_t mapsUpdated = 0;
         std::uint64_t localMapBytes = 0, referenceMapBytes = 0, referenceMapGpuBytes = 0;  ///< the most
         double bytesPerTexel = 0;
+        std::vector<double> positions, predictedMs, errors;  ///< of governed frames
+        double last = 0;
+        std::vector<std::string> givenUp;  ///< a frame each
     };
 
     Options options_;

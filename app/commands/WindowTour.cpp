@@ -60,7 +60,7 @@ class WindowTour {
           panel_(panel),
           progress_(progress),
           scene_(scene),
-          drive_(scene, options),
+          drive_(scene, options, window.renderer()),
           camera_(scene.city.tour, scene.city.bounds),
           shots_(std::nullopt, scene.kinds),
           report_(options, window.renderer()) {
@@ -84,6 +84,7 @@ class WindowTour {
     }
     /// Shows how far the reference maps are, over the street as it would look without them.
     CarryOn showWaiting(const std::string& remark);
+    CarryOn showCalibrating();
     void endWaiting();
 
     Options options_;
@@ -123,6 +124,13 @@ CarryOn WindowTour::showWaiting(const std::string& remark) {
     };
 }
 
+CarryOn WindowTour::showCalibrating() {
+    return [this](std::size_t done, std::size_t total) {
+        return progress_.show({"Measuring what details cost on this machine, once: it is kept.", done, total,
+                               "Esc: without a budget."});
+    };
+}
+
 void WindowTour::endWaiting() {
     waited_ = progress_.finish();
     watch_.lap();
@@ -130,7 +138,9 @@ void WindowTour::endWaiting() {
 
 bool WindowTour::start() {
     moveCamera(0, {});
-    const bool ready = drive_.startReflecting(showWaiting("Esc quits; what is finished is kept."));
+    const bool ready =
+        drive_.startReflecting(showWaiting("Esc quits; what is finished is kept."), showCalibrating());
+    choices_.settings = drive_.settings();
     endWaiting();
     return ready;
 }
@@ -153,7 +163,8 @@ void WindowTour::obey(const ControlResult& controls) {
         window_.captureCursor(looking_);
     }
     if (choices_.settings != drive_.settings()) {
-        drive_.change(choices_.settings, showWaiting("Esc: stay with what was there before."));
+        drive_.change(choices_.settings, showWaiting("Esc: stay with what was there before."),
+                      showCalibrating());
         choices_.settings = drive_.settings();
         endWaiting();
     }
@@ -188,6 +199,14 @@ PanelNews WindowTour::news() {
     news.reflections = stats_.reflections;
     news.drawn = stats_.drawn;
     news.vehicles = drive_.traffic().size();
+    if (const Governor* governor = drive_.governor()) {
+        news.ladder = governor->ladder().rungs();
+        news.position = stats_.governed.position;
+        news.predictedMs = stats_.governed.predictedMs;
+        news.actualMs = governor->actualMs();
+        news.predictedError = stats_.governed.error;
+        news.givenUp = stats_.governed.givenUp;
+    }
     if (camera_.mode() != CameraMode::follow) return news;
     const std::vector<vehicles::VehiclePose>& vehicles = drive_.frame().vehicles;
     const auto found = std::find_if(vehicles.begin(), vehicles.end(),

@@ -48,7 +48,7 @@ Detail blend(const Detail& a, const Detail& b, double t) {
                          byRatio(x.errorThreshold, y.errorThreshold, t),
                          evenly(x.candidates, y.candidates, t), evenly(x.lookups, y.lookups, t)};
     detail.drawing = {evenly(a.drawing.scale, b.drawing.scale, t),
-                      byRatio(a.drawing.antialiasing, b.drawing.antialiasing, t),
+                      evenly(a.drawing.antialiasing, b.drawing.antialiasing, t),
                       byRatio(a.drawing.vehicleTolerance, b.drawing.vehicleTolerance, t)};
     return detail;
 }
@@ -74,7 +74,9 @@ std::string givenUp(const Detail& full, const Detail& now) {
     if (now.drawing.scale < full.drawing.scale)
         add("drawn at " + number(100 * now.drawing.scale, "%.0f") + "% of the size");
     if (now.drawing.antialiasing < full.drawing.antialiasing)
-        add(now.drawing.antialiasing <= 0.125 ? "no antialiasing" : "less antialiasing");
+        add(now.drawing.antialiasing <= 0
+                ? "no antialiasing"
+                : "antialiasing in " + number(100 * now.drawing.antialiasing, "%.0f") + "% of the picture");
     if (now.drawing.vehicleTolerance > full.drawing.vehicleTolerance)
         add("vehicles off by " + number(now.drawing.vehicleTolerance, "%.1f") + " pixels, not " +
             number(full.drawing.vehicleTolerance, "%.1f"));

@@ -23,8 +23,9 @@ struct ReflectionDetail {
 struct DrawingDetail {
     /// Side of the picture that is drawn over that of the view, (0, 1]; it is stretched afterwards.
     double scale = 1;
-    /// 1: all edges that antialiasing after the fact finds are mended; less: those of so much the greater
-    /// contrast; at an eighth or below none, and the pass is left out. Nothing else depends on it.
+    /// Share of the picture's height, in its middle, where antialiasing after the fact mends edges: far
+    /// things, which need it most, keep it longest. What it costs goes with it. Nothing where edges are
+    /// otherwise treated.
     double antialiasing = 1;
     /// Pixels by which a vehicle's level of detail may be off.
     double vehicleTolerance = 2.5;

@@ -93,10 +93,13 @@ std::vector<Detail> orderOfGivingUp(const Detail& finest, std::span<const Trial>
     while (true) {
         std::size_t best = trials.size();
         double least = std::numeric_limits<double>::infinity();
+        std::array<bool, knobNames.size()> met{};
         for (std::size_t i = 0; i < trials.size(); ++i) {
             const State& state = states[static_cast<std::size_t>(trials[i].knob)];
             const double saves = trials[i].savedMs - state.savedMs;
-            if (i < state.next || !(saves >= leastMs)) continue;
+            bool& other = met[static_cast<std::size_t>(trials[i].knob)];
+            if (i < state.next || !(saves >= leastMs) || other) continue;
+            other = true;
             const double rate = std::max(trials[i].lost - state.lost, 0.0) / saves;
             if (rate < least) {
                 least = rate;

@@ -71,9 +71,9 @@ struct Trial {
 };
 
 /// The order in which to give things up: from the finest detail on, always that next step of a knob which
-/// loses least for each millisecond that it saves. Trials of one knob come from fine to coarse. What saves
-/// less than `leastMs` more than the step before is not worth a rung: noise would decide. The finest comes
-/// first.
+/// loses least for each millisecond that it saves. Trials of one knob come from fine to coarse, and none is
+/// passed over, so that what is blended in between stays near to what was measured; but what saves less than
+/// `leastMs` more than the step before is not worth a rung: noise would decide. The finest comes first.
 std::vector<Detail> orderOfGivingUp(const Detail& finest, std::span<const Trial> trials, double leastMs);
 
 }  // namespace app

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "app/panel/Controls.h"
@@ -123,7 +124,10 @@ struct Panel::Impl {
     float hour = -1;
 
     void drawSettings(const PanelNews& news, PanelChoices& choices);
+    void drawBudget(const PanelNews& news, DriveSettings& settings);
     void drawCounters(const PanelNews& news);
+
+    float budget = -1;
 };
 
 void Panel::Impl::drawSettings(const PanelNews& news, PanelChoices& choices) {
@@ -146,6 +150,9 @@ void Panel::Impl::drawSettings(const PanelNews& news, PanelChoices& choices) {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("Another light needs other reference maps: this may take a while the first time.");
 
+    if (settings.method == ReflectionMethod::mem && settings.mem == MemVariant::ours)
+        drawBudget(news, settings);
+
     combo("camera", cameraNames, choices.camera);
     if (!news.followed.empty()) {
         if (ImGui::ArrowButton("before", ImGuiDir_Left)) choices.nextVehicle = -1;
@@ -160,6 +167,44 @@ void Panel::Impl::drawSettings(const PanelNews& news, PanelChoices& choices) {
     if (ImGui::Button("screenshot")) choices.screenshot = true;
     ImGui::SameLine();
     if (ImGui::Button("help (F1)")) choices.showHelp = !choices.showHelp;
+}
+
+void Panel::Impl::drawBudget(const PanelNews& news, DriveSettings& settings) {
+    bool held = settings.budgetMs > 0;
+    if (ImGui::Checkbox("hold a budget", &held)) {
+        settings.budgetMs = held ? std::max(static_cast<double>(budget), 16.0) : 0;
+        if (held) settings.error = 0;
+        budget = static_cast<float>(settings.budgetMs);
+    }
+    if (settings.budgetMs > 0) {
+        if (budget <= 0) budget = static_cast<float>(settings.budgetMs);
+        ImGui::SliderFloat("ms a frame", &budget, 2, 100, "%.1f",
+                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+        if (ImGui::IsItemDeactivatedAfterEdit())
+            settings.budgetMs = static_cast<double>(budget);
+        else if (!ImGui::IsItemActive())
+            budget = static_cast<float>(settings.budgetMs);
+    }
+    if (news.ladder.empty()) return;
+    ImGui::Text("predicted %.1f ms, actual %.1f ms; FLIP %.3f", news.predictedMs, news.actualMs,
+                news.predictedError);
+    ImGui::TextWrapped("given up: %s", news.givenUp.empty() ? "nothing" : news.givenUp.c_str());
+    if (news.ladder.size() < 2 || !ImGui::TreeNode("as calibrated")) return;
+    if (ImGui::BeginTable("ladder", 4, ImGuiTableFlags_SizingStretchProp)) {
+        for (const char* head : {"", "ms", "FLIP", "beside"}) ImGui::TableSetupColumn(head);
+        ImGui::TableHeadersRow();
+        for (std::size_t i = 0; i < news.ladder.size(); ++i) {
+            const Rung& rung = news.ladder[i];
+            const bool here = std::abs(news.position - static_cast<double>(i)) <= 0.5;
+            row(here ? ">" : "", "%.1f", rung.ms());
+            for (const double value : {rung.error, rung.pictureError}) {
+                ImGui::TableNextColumn();
+                ImGui::Text("%.4f", value);
+            }
+        }
+        ImGui::EndTable();
+    }
+    ImGui::TreePop();
 }
 
 void Panel::Impl::drawCounters(const PanelNews& news) {

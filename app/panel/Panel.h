@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/display/Window.h"
+#include "app/frame/DetailLadder.h"
 #include "app/frame/DriveSettings.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/panel/MapView.h"
@@ -37,6 +38,11 @@ struct PanelNews {
     ReflectionCounters reflections;
     RenderCounters drawn;
     std::size_t vehicles = 0;
+    std::span<const Rung> ladder;  ///< what a budget is held with; empty: there is none
+    double position = 0;           ///< on it
+    double predictedMs = 0, actualMs = 0;
+    double predictedError = 0;     ///< mean FLIP on mirrors, as calibrated
+    std::string givenUp;           ///< empty: nothing
     std::string followed;          ///< name of the followed vehicle; empty: none
     std::uint32_t mapTexture = 0;  ///< from MapView; 0: nothing to show
     std::span<const MapLine> mesh;

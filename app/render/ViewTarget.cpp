@@ -47,7 +47,7 @@ void ViewTarget::begin(glm::ivec2 size, double scale) {
     glClear(GL_DEPTH_BUFFER_BIT);  // every pixel gets a colour, the sky's at least
 }
 
-void ViewTarget::mendEdges(float antialiasing) {
+void ViewTarget::mendEdges(int rows) {
     glCopyImageSubData(colour_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, smooth_.name(), GL_TEXTURE_2D, 0, 0, 0, 0,
                        drawn_.x, drawn_.y, 1);
     glBindFramebuffer(GL_FRAMEBUFFER, smoothTarget_.name());
@@ -56,8 +56,9 @@ void ViewTarget::mendEdges(float antialiasing) {
     nothing_.bind();
     // Marks take the scene's depth buffer, which has served: depth 1 is the near plane, where nothing is
     // drawn.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, (drawn_.y - rows) / 2, drawn_.x, rows);
     findEdges_.set("last", drawn_ - 1);
-    findEdges_.set("antialiasing", antialiasing);
     findEdges_.use();
     glDepthFunc(GL_ALWAYS);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -71,12 +72,13 @@ void ViewTarget::mendEdges(float antialiasing) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_GEQUAL);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 void ViewTarget::finish(std::uint32_t framebuffer, double antialiasing) {
-    // An edge's contrast is at most 1, and an eighth of it is the threshold.
-    const bool mended = antialiasing_ == Antialiasing::fxaa && antialiasing > 0.125;
-    if (mended) mendEdges(static_cast<float>(antialiasing));
+    const int rows = static_cast<int>(std::lround(std::clamp(antialiasing, 0.0, 1.0) * drawn_.y));
+    const bool mended = antialiasing_ == Antialiasing::fxaa && rows > 0;
+    if (mended) mendEdges(rows);
     std::uint32_t source = (mended ? smoothTarget_ : target_).name();
     const bool stretched = drawn_ != size_;
     if (stretched && antialiasing_ == Antialiasing::msaa4) {

@@ -27,7 +27,8 @@ class ViewTarget {
     void finish(std::uint32_t framebuffer, double antialiasing = 1);
 
   private:
-    void mendEdges(float antialiasing);
+    /// In so many rows of pixels, the middle ones.
+    void mendEdges(int rows);
 
     Antialiasing antialiasing_;
     glm::ivec2 size_{0};

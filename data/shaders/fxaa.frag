@@ -5,9 +5,7 @@
 layout(binding = 3) uniform sampler2D image;
 uniform vec2 texel;  // 1 / size
 uniform ivec2 last;  // the last pixel drawn
-#ifdef FIND
-uniform float antialiasing;  // 1: all edges, less: of more contrast
-#else
+#ifndef FIND
 layout(location = 0) out vec4 colourOut;
 #endif
 
@@ -32,7 +30,7 @@ void main() {
     float lowest = min(min(min(n, s), min(e, w)), m);
     float range = highest - lowest;
 #ifdef FIND
-    if (range * antialiasing < max(edgeThresholdDark, highest * edgeThreshold)) discard;
+    if (range < max(edgeThresholdDark, highest * edgeThreshold)) discard;
 #else
     float ne = lumaAt(here + ivec2(1, 1));
     float sw = lumaAt(here - ivec2(1, 1));
