@@ -19,6 +19,12 @@ std::vector<Bench> allBenches() {
           trafficOptions | severalCars | qualityOption | cellOption | mapsOnOptions | pictureOptions |
               durationOptions},
          benchCars},
+        {{"empty", "what mem costs where there is nothing to reflect, against none",
+          cellOption | pictureOptions},
+         benchEmpty},
+        {{"governor", "a budget held through a step from 10 to 200 cars on screen and back",
+          budgetOption | cellOption | pictureOptions},
+         benchGovernor},
         {{"localmap", "one local map by every method, against re-rendering its six faces",
           mapOptions | mapsOnOptions},
          benchLocalMap},

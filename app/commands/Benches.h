@@ -22,6 +22,8 @@ int reportBench(const Options& options, const ResultFile& results,
                 const std::vector<std::vector<std::string>>& table);
 
 int benchCars(const Options& options);
+int benchEmpty(const Options& options);
+int benchGovernor(const Options& options);
 int benchStills(const Options& options);
 int benchTracer(const Options& options);
 int benchLocalMap(const Options& options);

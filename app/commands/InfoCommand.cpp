@@ -15,6 +15,7 @@
 #include "app/commands/Commands.h"
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
+#include "app/commands/SceneNeeds.h"
 #include "app/commands/Version.h"
 #include "app/display/OffscreenContext.h"
 #include "app/display/OffscreenTarget.h"
@@ -126,6 +127,9 @@ void printCity(const Options& options) {
     rows.emplace_back("reference maps", referenceMapsOf(city, options));
     print(city.name.empty() ? options.city : city.name, rows);
     for (const std::string& note : city.notes) std::cout << "  note: " << note << "\n";
+    PreparationOptions preparation;
+    preparation.cell = static_cast<float>(options.cell);
+    print("what its reflections need (found without drawing it)", describe(sceneNeeds(city, preparation)));
 }
 
 }  // namespace

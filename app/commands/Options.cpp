@@ -150,13 +150,14 @@ void parseBudget(const std::string& text, double& target) {
                                    "'" + text + "' is not a time from 0.1 to 10000 milliseconds, like 16ms");
 }
 
-void addBudget(CLI::App& parser, Options& o) {
+void addBudget(CLI::App& parser, Options& o, unsigned groups) {
     auto* budget = parser
                        .add_option_function<std::string>(
                            "--budget", [&o](const std::string& text) { parseBudget(text, o.budgetMs); },
-                           "time of a frame to be held: detail follows the load (method mem); calibrates "
+                           "time of a frame to be held by method mem: detail follows the load; calibrates "
                            "once, some seconds")
                        ->type_name("MS");
+    if (!(groups & errorOptions)) return;
     parser
         .add_option("--error", o.error,
                     "mean FLIP on mirrors, 0.001 to 1, to be met with the cheapest detail (method mem)")
@@ -204,7 +205,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
     if (groups & qualityOption)
         addNamed(parser, "--quality", o.quality, qualityNames,
                  "detail of drawing and reflections (default medium)");
-    if (groups & budgetOptions) addBudget(parser, o);
+    if (groups & budgetOption) addBudget(parser, o, groups);
     if (groups & mapsOnOptions) {
         addNamed(parser, "--maps-on", o.mapsOn, mapsOnNames,
                  "where mem keeps reference maps and makes local maps (default auto: gpu, but cpu where "

@@ -83,7 +83,8 @@ enum OptionGroup : unsigned {
     rayOptions = 1u << 18,        ///< --samples --bounces
     shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
 
-    budgetOptions = 1u << 20,  ///< --budget --error --fixed-quality
+    budgetOption = 1u << 20,  ///< --budget
+    errorOptions = 1u << 21,  ///< --error --fixed-quality
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

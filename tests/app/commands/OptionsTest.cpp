@@ -10,8 +10,8 @@ namespace {
 Command tour() {
     return {.name = "tour",
             .summary = "test",
-            .groups = cityOptions | trafficOptions | reflectionOptions | pictureOptions | outOptions |
-                      jsonOptions | durationOptions | displayOptions,
+            .groups = cityOptions | trafficOptions | reflectionOptions | budgetOption | errorOptions |
+                      pictureOptions | outOptions | jsonOptions | durationOptions | displayOptions,
             .benches = {},
             .run = [](const Options&) { return exitOk; }};
 }
@@ -137,6 +137,20 @@ TEST(OptionsTest, absurdNumbersAreRefusedAndNamed) {
             EXPECT_EQ(code, exitUsage) << argument;
             EXPECT_NE(said.find(option), std::string::npos) << said;
         }
+}
+
+TEST(OptionsTest, aBudgetIsATimeAndExcludesAnError) {
+    for (const char* text : {"16ms", "16 ms", "16"})
+        EXPECT_EQ(std::get<Options>(parse(tour(), {"--budget", text})).budgetMs, 16) << text;
+    EXPECT_EQ(std::get<Options>(parse(tour(), {"--budget", "8.5ms", "--fixed-quality"})).budgetMs, 8.5);
+    EXPECT_EQ(std::get<Options>(parse(tour(), {"--error", "0.03"})).error, 0.03);
+    for (const char* text : {"16s", "ms", "", "0", "-3ms", "nan", "inf", "1e9", "16msx"}) {
+        const auto [code, said] = refused(tour(), {"--budget", text});
+        EXPECT_EQ(code, exitUsage) << text;
+        EXPECT_NE(said.find("--budget"), std::string::npos) << said;
+    }
+    EXPECT_EQ(refused(tour(), {"--budget", "16ms", "--error", "0.03"}).first, exitUsage);
+    EXPECT_EQ(refused(tour(), {"--error", "2"}).first, exitUsage);
 }
 
 TEST(OptionsTest, misspeltWordsAreNamedWithTheOneThatWasMeant) {

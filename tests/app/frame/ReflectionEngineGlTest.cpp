@@ -155,6 +155,45 @@ TEST_F(ReflectionEngineGlTest, whereMapsAreIsAsAskedAndIsTold) {
     EXPECT_GT(texels(*gpu, slot)[0].r, 0);
 }
 
+TEST_F(ReflectionEngineGlTest, whatASceneDoesNotNeedIsNotDone) {
+    NoDrawer drawer;
+    ReflectionSettings settings;
+    settings.detail = detailOf(Quality::high);
+    settings.detail->texelBudget = 1e9;
+    settings.mapsOn = MapsOn::cpu;
+    ReflectionEngine engine(tracer_, maps_, models_, settings);
+    const auto expectNothingDone = [&](std::uint32_t visible) {
+        EXPECT_EQ(engine.counters().visible, visible);
+        EXPECT_EQ(engine.counters().rebuilt, 0u);
+        EXPECT_EQ(engine.counters().postponed, 0u);
+        EXPECT_EQ(engine.counters().rays, 0u);
+        EXPECT_EQ(engine.counters().texels, 0u);
+    };
+    // Nothing in view: no map, not even memory for one.
+    engine.update(scene_, {}, drawer);
+    expectNothingDone(0);
+    EXPECT_EQ(engine.counters().localMapBytes, 0u);
+    // In view, each is built once ...
+    engine.update(scene_, seen_, drawer);
+    EXPECT_EQ(engine.counters().rebuilt, 3u);
+    EXPECT_GT(engine.counters().rays, 0u);
+    // ... and while traffic and camera stand, nothing more.
+    for (int frame = 0; frame < 5; ++frame) {
+        scene_.time += 1.0 / 30;
+        engine.update(scene_, seen_, drawer);
+        expectNothingDone(3);
+    }
+    // Gone from view, though it moves.
+    scene_.vehicles[0].position.y += 5;
+    engine.update(scene_, {}, drawer);
+    expectNothingDone(0);
+    // Plain paint asks for nothing whatever is in view.
+    settings.method = ReflectionMethod::none;
+    engine.configure(settings);
+    engine.update(scene_, seen_, drawer);
+    expectNothingDone(0);
+}
+
 TEST_F(ReflectionEngineGlTest, anotherHourHasAnotherSky) {
     const auto cpu = engine(MapsOn::cpu, false), gpu = engine(MapsOn::gpu, false);
     std::vector<std::vector<glm::vec3>> skies;

@@ -195,6 +195,20 @@ TEST(ReflectionPlanTest, stoppedTrafficNeedsNoFurtherMaps) {
     EXPECT_EQ(planner.plan(street.scene, seen, heights, options).jobs.size(), 40u);
 }
 
+TEST(ReflectionPlanTest, whatIsOutOfSightCostsNothingHoweverMuchItMoves) {
+    Street street(21);
+    street.fill(60);
+    ReflectionPlanner planner;
+    for (int frame = 0; frame < 40; ++frame) {
+        street.step(1.0 / 30);
+        const ReflectionPlan plan = planner.plan(street.scene, {}, heights, {});
+        EXPECT_EQ(plan.jobs.size() + plan.visible + plan.fresh + plan.shared + plan.postponed, 0u);
+        EXPECT_EQ(plan.texels, 0u);
+        for (const auto& slot : plan.slots) EXPECT_FALSE(slot.valid());
+    }
+    for (const int layers : planner.layersNeeded()) EXPECT_EQ(layers, 0);
+}
+
 TEST(ReflectionPlanTest, mapsThatChangedOutOfSightAreRebuilt) {
     // A car stands; another passes it while the camera looks elsewhere for half a second.
     FrameScene scene;
