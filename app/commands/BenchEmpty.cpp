@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "app/commands/Version.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/ReflectionEngine.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"

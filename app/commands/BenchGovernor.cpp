@@ -15,6 +15,7 @@
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/Governor.h"
+#include "app/frame/ReflectionEngine.h"
 #include "app/render/Readback.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
