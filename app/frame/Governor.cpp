@@ -14,9 +14,9 @@ namespace {
 constexpr double aimed = 0.97;
 constexpr double bandBelow = 0.92;
 constexpr double bandAbove = 1.01;
-// Change of the predicted time in a second at most, as a logarithm: halved in 0.28 s, doubled in 2 s.
+// Change of the predicted time in a second at most, as a logarithm: halved in 0.28 s, doubled in 1.2 s.
 constexpr double fastestDown = 2.5;
-constexpr double fastestUp = 0.35;
+constexpr double fastestUp = 0.6;
 /// Longest frame that counts as time in which to move: after a stall nothing jumps.
 constexpr double longestStep = 0.05;
 /// For a reflection's load, milliseconds: below this the share of planning alone would decide.

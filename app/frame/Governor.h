@@ -27,8 +27,9 @@ struct FrameCost {
 ///     predicted(p) = drawing load x drawing(p) + reflection load x reflections(p)
 ///
 /// It stays where it is while the prediction is within a band around its aim, and moves at a limited rate
-/// otherwise: down fast enough to halve a frame's time in about 0.3 s, up in several seconds, so that nothing
-/// pops and what was gained is not lost again at once. Deterministic: the same costs, the same details.
+/// otherwise: down fast enough to halve a frame's time in about 0.3 s, up several times as slowly, so that
+/// nothing pops and what was gained is not lost again at once. Deterministic: the same costs, the same
+/// details.
 class Governor {
   public:
     /// Precondition: the ladder has a rung. Budgets that are not positive are taken for a microsecond.
