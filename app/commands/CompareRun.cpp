@@ -26,7 +26,7 @@ constexpr std::size_t noneDrawings = 3;
 /// What bringing maps to their age counts for in the progress bar.
 constexpr std::uint32_t ageSteps = 4;
 /// Of the pictures that are kept.
-constexpr glm::ivec2 stripSize(480, 270);
+constexpr glm::ivec2 stripSize(640, 360);
 
 struct ViewKind {
     std::string name;
@@ -65,6 +65,8 @@ ReflectionSettings settingsFor(const SweepPoint& point) {
         fromName<ReflectionMethod>(reflectionMethodNames, point.method).value_or(ReflectionMethod::none);
     settings.variant = point.variant == "paper" ? MemVariant::paper : MemVariant::ours;
     settings.quality = point.quality;
+    settings.detail = ReflectionDetail{point.texelBudget, point.texelsPerPixel, point.errorThreshold,
+                                       point.candidates, point.lookups};
     settings.everyFrame = point.everyFrame;
     settings.mapsInTurn = point.mapsInTurn;
     settings.mapsOn = MapsOn::automatic;

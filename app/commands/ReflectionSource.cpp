@@ -15,8 +15,11 @@ class EngineSource final : public ReflectionSource {
     void beginFrame(const FrameScene& scene, std::span<const SeenVehicle> seen,
                     SceneRenderer& renderer) override {
         if (engine_.settings().method == ReflectionMethod::none) return;
-        if (engine_.settings().method == ReflectionMethod::raytrace)
+        if (engine_.settings().method == ReflectionMethod::raytrace && !lent_) {
+            // Once: every time, the sun's shadows are read back.
             engine_.useRayTracer(&rays_, [&renderer] { return renderer.sunMap(); });
+            lent_ = true;
+        }
         slots_ = engine_.update(scene, seen, renderer).slots;
     }
     VehicleReflections forView(const View& view, const SceneRenderer&) override {
@@ -40,6 +43,7 @@ class EngineSource final : public ReflectionSource {
   private:
     ReflectionEngine engine_;
     RayTracer& rays_;
+    bool lent_ = false;
     std::vector<reflection::LocalMapSlot> slots_;
 };
 

@@ -1,5 +1,6 @@
 #include "app/compare/ComparePage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -84,22 +85,41 @@ std::string factList(const PageHead& head, const std::vector<CompareRow>& rows) 
            fact("Program", "mirrorstreet " + escaped(head.version));
 }
 
-std::string verdictRows(const std::vector<CompareRow>& rows) {
-    std::string html;
-    for (const FrontVerdict& v : frontVerdicts(rows)) {
-        const bool whole = v.points > 0 && v.below == v.points;
-        const std::string what =
-            v.points == 0 ? "cheaper than <b>mem</b>&rsquo;s cheapest, or dearer than re-rendering"
-            : whole       ? "below, at every setting measured"
-                    : "below at " + std::to_string(v.below) + " of " + std::to_string(v.points) + " settings";
-        html += "<tr><td>" + std::to_string(v.cars) + "</td><td><i class=\"key\" data-method=\"" +
-                escaped(v.other) + "\"></i>" + escaped(v.other) + "</td><td class=\"" +
-                (v.points == 0 ? "open"
-                 : whole       ? "yes"
-                               : "no") +
-                "\">" + what + "</td></tr>\n";
+/// A row for each other method, a column for each number of cars.
+std::string verdictTable(const std::vector<CompareRow>& rows) {
+    const std::vector<FrontVerdict> verdicts = frontVerdicts(rows);
+    std::vector<std::uint32_t> cars;
+    std::vector<std::string> others;
+    for (const FrontVerdict& v : verdicts) {
+        if (std::find(cars.begin(), cars.end(), v.cars) == cars.end()) cars.push_back(v.cars);
+        if (std::find(others.begin(), others.end(), v.other) == others.end()) others.push_back(v.other);
     }
-    return html;
+    std::string html = "<table><thead><tr><th class=\"text\">beside</th>";
+    for (const std::uint32_t count : cars)
+        html += "<th class=\"text\">" + std::to_string(count) + (count == 1 ? " car" : " cars") + "</th>";
+    html += "</tr></thead><tbody>\n";
+    for (const std::string& other : others) {
+        html +=
+            "<tr><td><i class=\"key\" data-method=\"" + escaped(other) + "\"></i>" + escaped(other) + "</td>";
+        for (const std::uint32_t count : cars) {
+            const auto v = std::find_if(verdicts.begin(), verdicts.end(), [&](const FrontVerdict& x) {
+                return x.cars == count && x.other == other;
+            });
+            const bool none = v == verdicts.end() || v->points == 0;
+            const bool whole = !none && v->below == v->points;
+            html += std::string("<td class=\"") +
+                    (none    ? "open"
+                     : whole ? "yes"
+                             : "no") +
+                    "\">" +
+                    (none    ? "outside"
+                     : whole ? "below at all " + std::to_string(v->points)
+                             : "below at " + std::to_string(v->below) + " of " + std::to_string(v->points)) +
+                    "</td>";
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table>\n";
 }
 
 std::string picture(const std::string& kind, const Picture& p, const std::string& alt) {
@@ -157,7 +177,7 @@ std::string comparePage(const PageHead& head, const std::vector<CompareRow>& row
     put(page, "@CHARTS@", embedded::charts);
     put(page, "@ROWS@", tableRows(rows));
     put(page, "@STRIPS@", stripsHtml);
-    put(page, "@VERDICTS@", verdictRows(rows));
+    put(page, "@VERDICTS@", verdictTable(rows));
     put(page, "@FACTS@", factList(head, rows));
     put(page, "@PARTIAL@",
         head.partial
