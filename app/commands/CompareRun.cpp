@@ -21,8 +21,6 @@ namespace app {
 
 namespace {
 
-/// `none` is what every time is compared with: drawn so often a frame, spread over the others.
-constexpr std::size_t noneDrawings = 3;
 /// What bringing maps to their age counts for in the progress bar.
 constexpr std::uint32_t ageSteps = 4;
 /// Of the pictures that are kept.
@@ -111,6 +109,7 @@ struct Contender {
     SweepPoint point;
     std::unique_ptr<ReflectionSource> source;
     std::vector<double> frameMs;
+    std::vector<double> plainMs;  ///< of the same frame in plain paint, drawn just before
     double maps = 0;
     Picture now, before;
     std::vector<glm::vec3> radiance;  ///< of the last frame, where HDR-FLIP is measured
@@ -186,7 +185,6 @@ class Run {
     Contender truth_;  ///< drawn in every frame that is looked at, never timed
     FrameScene picture_;
     std::uint32_t visible_ = 0;
-    std::vector<double> noneMs_;  ///< of each measured frame
     MirrorMask mirrors_;
     std::vector<unsigned char> mask_, maskBefore_;
 };
@@ -263,18 +261,14 @@ void Run::step(std::uint32_t frame) {
     const bool last = frame + 1 == options_.warmUp + options_.frames;
 
     // The order turns from frame to frame, so that nobody always comes behind the same one.
-    std::vector<double> none;
     Contender& plain = contenders_.front();
     const std::size_t others = contenders_.size() - 1;
-    const std::size_t everySo = std::max<std::size_t>(1, (others + noneDrawings - 1) / noneDrawings);
     for (std::size_t k = 0; k < others; ++k) {
-        if (k % everySo == 0) {
-            const double ms = draw(*plain.source);
-            none.push_back(ms);
-        }
         Contender& c = contenders_[1 + (k + 7 * frame) % others];
         // What holds nothing from frame to frame needs no warm-up but the last.
         if (!looked && !measured && c.point.method == "rerender" && c.point.mapsInTurn == 0) continue;
+        // The clock drifts: each time has its own beside it to be compared with.
+        if (measured) c.plainMs.push_back(draw(*plain.source));
         const double ms = draw(*c.source);
         if (looked) {
             c.before = std::move(c.now);
@@ -287,8 +281,8 @@ void Run::step(std::uint32_t frame) {
         if (last && errors_ && c.point.isDefault && !interrupted()) c.radiance = radianceOf(*c.source);
     }
     if (measured) {
-        noneMs_.push_back(timingOf(none).median);
-        plain.frameMs.push_back(noneMs_.back());
+        plain.plainMs.push_back(draw(*plain.source));
+        plain.frameMs.push_back(plain.plainMs.back());
     }
     if (!looked) return;
     draw(*plain.source);
@@ -322,9 +316,9 @@ void Run::judge(bool flickers, bool last) {
 }
 
 void Run::collect(std::vector<CompareRow>& rows) const {
-    const std::vector<double>& rerender = named("rerender").frameMs;
+    const Contender& rerender = named("rerender");
     for (const Contender& c : contenders_) {
-        const std::size_t n = std::min({c.frameMs.size(), noneMs_.size(), rerender.size()});
+        const std::size_t n = std::min(c.frameMs.size(), rerender.frameMs.size());
         if (n == 0) continue;
         CompareRow row;
         row.point = c.point;
@@ -337,9 +331,9 @@ void Run::collect(std::vector<CompareRow>& rows) const {
         row.frame = timingOf(c.frameMs);
         std::vector<double> extra, ratio, share;
         for (std::size_t i = 0; i < n; ++i) {
-            extra.push_back(c.frameMs[i] - noneMs_[i]);
-            ratio.push_back(c.frameMs[i] / noneMs_[i]);
-            share.push_back(extra.back() / std::max(rerender[i] - noneMs_[i], 1e-3));
+            extra.push_back(c.frameMs[i] - c.plainMs[i]);
+            ratio.push_back(c.frameMs[i] / c.plainMs[i]);
+            share.push_back(extra.back() / std::max(rerender.frameMs[i] - rerender.plainMs[i], 1e-3));
         }
         row.reflection = timingOf(extra);
         row.ratioToNone = timingOf(ratio).median;
