@@ -150,8 +150,7 @@ for (const chart of charts) {
 }
 function drawForPaper() {
   for (const chart of charts) {
-    const wide = chart.canvas.parentNode.parentNode.clientWidth > 900;
-    chart.resize(wide ? 1040 : 520, 350);
+    chart.resize(520, 350);
     chart.paper.src = chart.toBase64Image();
     chart.resize();
   }
