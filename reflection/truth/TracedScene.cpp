@@ -202,16 +202,22 @@ void TracedScene::trace(std::span<const TracedRay> rays, std::span<TracedHit> hi
 void TracedScene::blocked(std::span<const TracedRay> rays, std::span<std::uint8_t> result) const {
     RayContext context;
     rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    alignas(64) RTCRay16 packed;
-    alignas(64) int valid[packet];
-    for (std::size_t first = 0; first < rays.size(); first += packet) {
-        const auto some = rays.subspan(first, std::min(packet, rays.size() - first));
-        context.rays = some.data();
-        fill(packed, some, valid);
-        rtcOccluded16(valid, impl_->scene, &context.embree, &packed);
+    // One by one: Embree 3.13.5 was seen never to return from packets of sixteen of which one ray is valid.
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        context.rays = &rays[i];
+        RTCRay ray{};
+        ray.org_x = rays[i].origin.x;
+        ray.org_y = rays[i].origin.y;
+        ray.org_z = rays[i].origin.z;
+        ray.dir_x = rays[i].direction.x;
+        ray.dir_y = rays[i].direction.y;
+        ray.dir_z = rays[i].direction.z;
+        ray.tnear = rays[i].from;
+        ray.tfar = rays[i].to;
+        ray.mask = 0xffffffffu;
+        rtcOccluded1(impl_->scene, &context.embree, &ray);
         // Embree marks what is blocked with a far end of minus infinity.
-        for (std::size_t i = 0; i < some.size(); ++i) result[first + i] = packed.tfar[i] < 0 ? 1 : 0;
+        result[i] = ray.tfar < 0 ? 1 : 0;
     }
 }
 

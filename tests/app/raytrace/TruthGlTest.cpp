@@ -1,0 +1,161 @@
+// Plain paint ray traced is plain paint drawn: what differs in a measurement is then the reflection.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/display/OffscreenContext.h"
+#include "app/display/OffscreenTarget.h"
+#include "app/raytrace/Edges.h"
+#include "app/raytrace/RayTracer.h"
+#include "app/render/Readback.h"
+#include "app/render/SceneRenderer.h"
+#include "reflection/gl/ScreenLight.h"
+#include "reflection/gl/SoftwareRenderer.h"
+#include "reflection/truth/ImageError.h"
+#include "tests/app/raytrace/MirrorWorld.h"
+
+namespace app {
+namespace {
+
+constexpr glm::ivec2 size(320, 180);
+
+class TruthGlTest : public testing::Test {
+  protected:
+    TruthGlTest() : target_(size) {
+        // Patterns with detail, and one thing that stands in many places.
+        city_.materials[0].pattern = city::Pattern::cobbles;
+        city_.materials[1].pattern = city::Pattern::facadeBrick;
+        city_.materials[2].pattern = city::Pattern::facadePlaster;
+        city::Prototype post;
+        post.levels.emplace_back();
+        test::addBox(post.levels.back().mesh, {-0.3f, -0.3f, 0}, {0.3f, 0.3f, 3}, 4);
+        city_.prototypes.push_back(post);
+        for (int i = -4; i < 5; ++i) {
+            city::Placement placement;
+            placement.worldFromPrototype[3] = glm::vec4(8 * i, 13, 0, 1);
+            city_.placements.push_back(placement);
+        }
+        city_.signalHeads.push_back({{-2, 4, 3}, {-1, 0, 0}, 0, 0});
+        models_ = {test::boxCar(), test::mirrorBall(48)};
+        RenderOptions options;
+        options.antialiasing = Antialiasing::none;
+        renderer_ = std::make_unique<SceneRenderer>(city_, models_, options);
+        tracer_ = std::make_unique<RayTracer>(city_, models_);
+        if (reflection::softwareRenderer()) tracer_->useTextureFilter(TextureFilter::llvmpipe);
+        view_ = lookAt({-12, 3, 3.2}, {0, 8, 1}, glm::radians(60.0), size);
+        frame_.vehicles = {test::poseAt(1, 0, {-3, 6, 0}, 0.3), test::poseAt(2, 1, {-1, 9, 0}),
+                           test::poseAt(3, 0, {9, 5, 0}, 3)};
+        frame_.vehicles[0].paint = {0.5f, 0.05f, 0.04f};
+        frame_.vehicles[0].braking = true;
+        frame_.signalColours = {vehicles::SignalColour::amber};
+        frame_.views = {view_};
+    }
+
+    std::vector<glm::vec3> draw(const VehicleReflections& reflections = {}) {
+        renderer_->prepare(frame_);
+        renderer_->drawView(view_, reflections, target_.framebuffer());
+        const Image8 image = readPixels(target_.framebuffer(), size);
+        std::vector<glm::vec3> pixels(image.rgba.size() / 4);
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            pixels[i] = glm::vec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0f;
+        return pixels;
+    }
+    void prepareTracer() {
+        tracer_->prepare(frame_);
+        tracer_->useSunMap(renderer_->sunMap());
+    }
+    double agreement(const TracedPicture& traced, const std::vector<glm::vec3>& drawn,
+                     const std::vector<unsigned char>& mask) {
+        return reflection::psnr({size.x, size.y, traced.display(frame_.lighting.exposure)},
+                                {size.x, size.y, drawn}, mask);
+    }
+    static std::vector<unsigned char> outside(const std::vector<unsigned char>& edges) {
+        std::vector<unsigned char> mask;
+        for (const unsigned char edge : edges) mask.push_back(edge == 0 ? 1 : 0);
+        return mask;
+    }
+
+    OffscreenContext context_;
+    OffscreenTarget target_;
+    city::CityModel city_ = test::boxCity();
+    std::vector<vehicles::VehicleModel> models_;
+    std::unique_ptr<SceneRenderer> renderer_;
+    std::unique_ptr<RayTracer> tracer_;
+    View view_;
+    FrameScene frame_;
+};
+
+constexpr TraceOptions plain{1, 1, true, 1};
+
+TEST_F(TruthGlTest, plainPaintTracedIsPlainPaintDrawn) {
+    for (const bool night : {false, true}) {
+        frame_.lighting = night ? lightingAt(23) : Lighting{};
+        const std::vector<glm::vec3> drawn = draw();
+        prepareTracer();
+        const TracedPicture traced = tracer_->render(view_, plain);
+        const std::vector<unsigned char> edges = edgesOf(traced, view_);
+        EXPECT_LT(std::count(edges.begin(), edges.end(), 1), size.x * size.y / 4);
+        EXPECT_GE(agreement(traced, drawn, outside(edges)), 45) << (night ? "night" : "day");
+        for (const SeenKind kind : {SeenKind::sky, SeenKind::city, SeenKind::vehicle}) {
+            std::vector<unsigned char> mask = outside(edges);
+            for (std::size_t i = 0; i < mask.size(); ++i)
+                if (traced.kind[i] != kind) mask[i] = 0;
+            ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 200) << static_cast<int>(kind);
+            EXPECT_GE(agreement(traced, drawn, mask), 45) << static_cast<int>(kind);
+        }
+        // What the comparison is worth: a small change of the scene fails it.
+        FrameScene other = frame_;
+        other.lighting.skyIrradiance *= 1.15f;
+        tracer_->prepare(other);
+        EXPECT_LT(agreement(tracer_->render(view_, plain), drawn, outside(edges)), 45);
+    }
+}
+
+TEST_F(TruthGlTest, raysToTheSunCastTheShadowsOfTheMap) {
+    const std::vector<glm::vec3> drawn = draw();
+    prepareTracer();
+    const TracedPicture traced = tracer_->render(view_, plain);
+    const std::vector<unsigned char> mask = outside(edgesOf(traced, view_));
+    tracer_->useSunMap(nullptr);
+    const double byRays = agreement(tracer_->render(view_, plain), drawn, mask);
+    tracer_->useSunMap(std::make_shared<SunMap>());
+    const double withoutShadows = agreement(tracer_->render(view_, plain), drawn, mask);
+    // Shadows end within a texel of the map of each other.
+    EXPECT_GT(byRays, 25);
+    EXPECT_LT(withoutShadows, byRays - 5);
+}
+
+TEST_F(TruthGlTest, tracedLightDrawnIsTheTracedPicture) {
+    draw();
+    prepareTracer();
+    const TracedPicture traced = tracer_->render(view_, {4, 2, false, 1});
+    const MirroredLight light = traced.mirroredLight();
+    reflection::ScreenLight screen;
+    screen.upload(light.radiance, light.size, light.low, light.high);
+    VehicleReflections reflections;
+    reflections.mirrored = screen.name();
+    const std::vector<glm::vec3> composed = draw(reflections);
+    std::vector<unsigned char> mask = outside(edgesOf(traced, view_));
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        if (traced.kind[i] != SeenKind::vehicle) mask[i] = 0;
+    ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 200);
+    EXPECT_GE(agreement(traced, composed, mask), 45);
+    EXPECT_LT(agreement(traced, draw(), mask), 35);  // plain paint is another picture
+}
+
+TEST(ScreenLightTest, sharedExponentKeepsNineBitsOfTheBrightest) {
+    for (const glm::vec3 v :
+         {glm::vec3(0), glm::vec3(1, 0.5f, 0.25f), glm::vec3(200, 3, 0.01f), glm::vec3(0.9999f, 0.2f, 0.1f),
+          glm::vec3(1e-4f, 3e-5f, 0), glm::vec3(1e9f, 0, 0), glm::vec3(-1, NAN, 2)}) {
+        const std::uint32_t word = reflection::packSharedExponent(v);
+        const float scale = std::ldexp(1.0f, static_cast<int>(word >> 27) - 24);
+        const glm::vec3 kept = glm::vec3(word & 511, word >> 9 & 511, word >> 18 & 511) * scale;
+        float brightest = 0;
+        for (int c = 0; c < 3; ++c) brightest = std::max(brightest, v[c] > 0 ? std::min(v[c], 65408.0f) : 0);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(kept[c], v[c] > 0 ? std::min(v[c], 65408.0f) : 0, brightest / 511 + 1e-7f) << v[c];
+    }
+}
+
+}  // namespace
+}  // namespace app
