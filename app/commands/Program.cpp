@@ -48,7 +48,8 @@ int runProgram(const std::vector<Command>& commands, std::span<const std::string
         const Options& options = std::get<Options>(outcome);
         if (options.quiet) spdlog::set_level(spdlog::level::warn);
         // Said now rather than after minutes of work.
-        for (const auto& file : {options.json, options.html, options.exportCity, options.exportCar, options.exportDrive})
+        for (const auto& file :
+             {options.json, options.html, options.exportCity, options.exportCar, options.exportDrive})
             if (file) requireWritable(*file);
         return command.run(options);
     }

@@ -28,8 +28,8 @@ float coatFresnel(const CoatedVertex& point, float facing);
 glm::vec3 plainSurroundings(const Lighting& lighting, const CoatedVertex& point, const glm::vec3& reflected);
 
 /// Radiance that a point of a vehicle sends towards an eye, with the analytic environment in place of a map:
-/// the twin of data/shaders/vehicle.vert and vehicle.frag without REFLECTIVE, in full sun. `normal` and `towardsEye` unit
-/// length, world frame.
+/// the twin of data/shaders/vehicle.vert and vehicle.frag without REFLECTIVE, in full sun. `normal` and
+/// `towardsEye` unit length, world frame.
 glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface,
                           const vehicles::VehiclePose& pose, const glm::vec3& normal,
                           const glm::vec3& towardsEye);
