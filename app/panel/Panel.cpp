@@ -186,8 +186,8 @@ void Panel::Impl::drawBudget(const PanelNews& news, DriveSettings& settings) {
             budget = static_cast<float>(settings.budgetMs);
     }
     if (news.ladder.empty()) return;
-    ImGui::Text("predicted %.1f ms, actual %.1f ms; FLIP %.3f", news.predictedMs, news.actualMs,
-                news.predictedError);
+    ImGui::TextWrapped("predicted %.1f ms, actual %.1f ms; FLIP %.3f", news.predictedMs, news.actualMs,
+                       news.predictedError);
     ImGui::TextWrapped("given up: %s", news.givenUp.empty() ? "nothing" : news.givenUp.c_str());
     if (news.ladder.size() < 2 || !ImGui::TreeNode("as calibrated")) return;
     if (ImGui::BeginTable("ladder", 4, ImGuiTableFlags_SizingStretchProp)) {
