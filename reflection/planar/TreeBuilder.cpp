@@ -259,6 +259,7 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         roughness = std::max(roughness, static_cast<double>(scene_.mirrors[m].plane.surface().roughness));
     }
     node.throughput = image.throughput * reflectance;
+    node.roughness = static_cast<float>(roughness);
     node.bounds = seen.portal.bounds;
     // A rough mirror's filter reaches beyond its edge, by some two standard deviations.
     NdcRect seenThrough = seen.portal.bounds;

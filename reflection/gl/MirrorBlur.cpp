@@ -1,0 +1,93 @@
+#include "reflection/gl/MirrorBlur.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace reflection::gl {
+
+namespace {
+
+constexpr int mostLevels = 7;  // as many as sizes in multiples of 64 can be halved
+
+}  // namespace
+
+void MirrorBlur::require(const glm::ivec2& size) {
+    if (!first_) {
+        first_ = Program::fromFiles({"fullscreen.vert", "mirror_blur.frag"}, {"FIRST"});
+        next_ = Program::fromFiles({"fullscreen.vert", "mirror_blur.frag"});
+        nothing_ = VertexArray::create();
+    }
+    if (pyramid_ && size_.x >= size.x && size_.y >= size.y) return;
+    size_ = glm::max(size_, size);
+    pyramid_ = Texture::image2D(GL_RGBA16F, size_.x, size_.y, mostLevels);
+    pyramid_.filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
+    levels_.clear();
+    for (int k = 0; k < mostLevels; ++k) {
+        levels_.push_back(Framebuffer::create());
+        levels_.back().attach(GL_COLOR_ATTACHMENT0, pyramid_.name(), k);
+    }
+    levels_.front().requireComplete("a rough mirror's map");
+}
+
+int MirrorBlur::blur(const MirrorLevel& map, const ReflectionNode& node, double sigma) {
+    require(map.size());
+    // The level whose kernel under the spline is as wide, and the next: see mirror_map.glsl.
+    const double level = 0.5 * std::log2(std::max((sigma * sigma + 0.25) / (7.0 / 12), 1.0));
+    const int count = std::clamp(static_cast<int>(level) + 2, 2, mostLevels);
+
+    // A fragment's ray: the inverse of the projection, row by row, over gl_FragCoord.
+    const glm::dmat4& c = node.clipFromView;
+    const glm::dmat3 worldFromView = glm::transpose(node.view.viewFromWorld);
+    const glm::dvec2 perTexel = 2.0 / glm::dvec2(node.resolution);
+    const glm::dvec3 corner((-1 + c[2][0]) / c[0][0], (-1 + c[2][1]) / c[1][1], -1);
+    first_.set("rayBase", glm::vec3(worldFromView * corner));
+    first_.set("rayRight", glm::vec3(worldFromView * glm::dvec3(perTexel.x / c[0][0], 0, 0)));
+    first_.set("rayUp", glm::vec3(worldFromView * glm::dvec3(0, perTexel.y / c[1][1], 0)));
+    first_.set("glass", glm::vec4(node.glass));
+
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    nothing_.bind();
+    map.colour.bind(0);
+    map.distance.bind(1);
+    first_.use();
+    glBindFramebuffer(GL_FRAMEBUFFER, levels_[0].name());
+    glViewport(0, 0, node.resolution.x, node.resolution.y);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    pyramid_.bind(0);
+    next_.use();
+    glm::ivec2 used = node.resolution, whole = size_;
+    for (int k = 1; k < count; ++k) {
+        // Levels that are written must not be readable.
+        glTextureParameteri(pyramid_.name(), GL_TEXTURE_MAX_LEVEL, k - 1);
+        next_.set("finerLevel", static_cast<float>(k - 1));
+        next_.set("finerTexel", 1.f / glm::vec2(whole));
+        next_.set("limit", (glm::vec2(used) - 0.5f) / glm::vec2(whole));
+        used = (used + 1) / 2;
+        whole /= 2;
+        glBindFramebuffer(GL_FRAMEBUFFER, levels_[static_cast<std::size_t>(k)].name());
+        glViewport(0, 0, used.x, used.y);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    glTextureParameteri(pyramid_.name(), GL_TEXTURE_MAX_LEVEL, mostLevels - 1);
+    return count;
+}
+
+std::uint64_t MirrorBlur::bytes() const {
+    std::uint64_t texels = 0;
+    if (pyramid_)
+        for (int k = 0; k < mostLevels; ++k)
+            texels += static_cast<std::uint64_t>(size_.x >> k) * static_cast<std::uint64_t>(size_.y >> k);
+    return 8 * texels;
+}
+
+void MirrorBlur::release() {
+    pyramid_ = Texture();
+    levels_.clear();
+    size_ = glm::ivec2(0);
+}
+
+}  // namespace reflection::gl

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "reflection/gl/MirrorScene.h"
+
+namespace reflection {
+
+enum class MirrorFormat : std::uint8_t {
+    rgba8,       ///< the paper's 32 bit pixels: values 0 .. 1 as the scene writes them
+    r11g11b10f,  ///< the same bytes for linear HDR radiance; no alpha
+    rgba16f
+};
+
+struct MirrorPassOptions {
+    MirrorFormat format = MirrorFormat::r11g11b10f;
+    /// Rough mirrors are filtered; false: all mirrors are drawn as smooth ones, without distance or blur.
+    bool gloss = true;
+    CurvedMaps environments =
+        CurvedMaps::cube;  ///< what `publish` hands out: cube maps or pairs of paraboloids
+};
+
+/// Since the last `resetCounters`, and what is held now.
+struct MirrorPassCounters {
+    std::uint64_t images = 0;  ///< nodes drawn
+    std::uint64_t faces = 0;
+    std::uint64_t filtered = 0;          ///< of the images, those blurred
+    std::uint64_t texels = 0;            ///< inside scissors
+    std::uint64_t mapBytes = 0;          ///< colour of the levels' maps, held now
+    std::uint64_t depthBytes = 0;        ///< their depth and distance, held now
+    std::uint64_t blurBytes = 0;         ///< one pyramid for all levels, held now
+    std::uint64_t environmentBytes = 0;  ///< complete environment maps, held now
+    std::uint64_t spareBytes = 0;        ///< the one environment map that is being drawn, and its depth
+};
+
+/// Executes a ReflectionTree with OpenGL 4.5: one map for each recursion level, made when met, used and
+/// reused, after Nielsen & Christensen 2002, figures 4 to 6; blurred for rough mirrors at every level. Owns
+/// the maps; draws the caller's scene through MirrorScene. Needs the context of its making in every call.
+class MirrorPass {
+  public:
+    explicit MirrorPass(const MirrorPassOptions& options = {});
+    ~MirrorPass();
+    MirrorPass(MirrorPass&&) noexcept;
+    MirrorPass& operator=(MirrorPass&&) noexcept;
+
+    /// Environment maps of the tree's jobs; `curved`: number of curved reflectors, for which maps are kept. A
+    /// map replaces its reflector's only when it is complete.
+    void drawEnvironments(const ReflectionTree& tree, MirrorScene& scene, std::size_t curved);
+
+    /// The reflections met in one view, whose own scene is drawn already, with depth: `target` is its image
+    /// and has the whole view in its viewport. Leaves the target bound.
+    void drawReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene,
+                         const MirrorTarget& target);
+
+    /// GL name of a curved reflector's complete map: GL_TEXTURE_CUBE_MAP, or GL_TEXTURE_2D_ARRAY of two
+    /// paraboloids; 0: none yet.
+    std::uint32_t environment(std::size_t curved) const;
+
+    /// Frees levels that the tree does not use; an empty tree keeps no texture but environment maps.
+    void trim(const ReflectionTree& tree);
+    /// Frees everything.
+    void release();
+
+    const MirrorPassCounters& counters() const;
+    void resetCounters();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace reflection
