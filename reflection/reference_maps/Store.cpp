@@ -6,10 +6,8 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
-#include <OpenEXR/ImfVersion.h>
 
 #include <array>
 #include <bit>
@@ -21,6 +19,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "city/terrain/ExrHeader.h"
 #include "reflection/reference_maps/CubeMapping.h"
 
 namespace reflection {
@@ -86,20 +85,6 @@ std::vector<std::size_t> pictureIndex(int n) {
                 index[i] = static_cast<std::size_t>(corner + x * alongX + y * alongY);
     }
     return index;
-}
-
-/// The header alone: Imf::InputFile would first make room for all the lines of which it tells. Throws what
-/// OpenEXR throws.
-Imf::Header headerOf(const std::filesystem::path& file) {
-    Imf::StdIFStream in(file.string().c_str());
-    std::array<char, 4> magic{}, flags{};
-    in.read(magic.data(), static_cast<int>(magic.size()));
-    in.read(flags.data(), static_cast<int>(flags.size()));
-    if (!Imf::isImfMagic(magic.data())) throw std::runtime_error("is no OpenEXR file");
-    int version = std::bit_cast<int>(flags);
-    Imf::Header header;
-    header.readFrom(in, version);
-    return header;
 }
 
 void renameInto(const std::filesystem::path& aside, const std::filesystem::path& file) {
@@ -193,7 +178,16 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
     std::error_code error;
     if (!std::filesystem::exists(source, error)) return {};
     try {
-        const Imf::Header header = headerOf(source);
+        // Before OpenEXR sees it: it makes room for whatever a header tells of.
+        const city::ExrHeader told = city::readExrHeader(source);
+        if (!told.fault.empty()) return {std::nullopt, told.fault};
+        if (told.compression != city::ExrHeader::Compression::zip)
+            return {std::nullopt, "is not packed as reference maps are"};
+        if (told.width < 4 || told.width % 2 != 0 || told.width > greatestFace ||
+            told.height != 6 * told.width)
+            return {std::nullopt, "is not six even square faces"};
+        Imf::InputFile in(source.string().c_str(), 1);
+        const Imf::Header& header = in.header();
         const auto* hash = header.findTypedAttribute<Imf::StringAttribute>(hashAttribute);
         const auto* position = header.findTypedAttribute<Imf::V3dAttribute>(positionAttribute);
         if (!hash || hash->value() != hex(contentHash_))
@@ -201,21 +195,11 @@ ReferenceMapStore::Loaded ReferenceMapStore::load(std::size_t index) const {
         if (!position || !std::isfinite(position->value().x + position->value().y + position->value().z))
             return {std::nullopt, "has no position"};
         const Imath::Box2i window = header.dataWindow();
-        const std::int64_t across = std::int64_t{window.max.x} - window.min.x + 1;
-        const std::int64_t down = std::int64_t{window.max.y} - window.min.y + 1;
-        if (across < 4 || across % 2 != 0 || across > greatestFace || down != 6 * across)
-            return {std::nullopt, "is not six even square faces"};
-        const auto n = static_cast<int>(across);
-        // No memory for what the file does not hold: deflate shrinks by 1032 at most (zlib's documentation).
-        constexpr std::uintmax_t texelBytes = 3 * sizeof(std::uint16_t) + sizeof(float);
-        const auto side = static_cast<std::uintmax_t>(n);
-        if (6 * side * side * texelBytes > 1032 * std::filesystem::file_size(source))
-            return {std::nullopt, "tells of more texels than it can hold"};
+        const auto n = static_cast<int>(told.width);
         for (const char* channel : {"R", "G", "B", "Z"})
             if (!header.channels().findChannel(channel))
                 return {std::nullopt, std::string("lacks channel ") + channel};
 
-        Imf::InputFile in(source.string().c_str(), 1);
         ReferenceMap map;
         map.faceSize = n;
         map.position = {position->value().x, position->value().y, position->value().z};
@@ -282,7 +266,11 @@ std::optional<ReferenceMapStore::Plan> ReferenceMapStore::loadPlan() const {
     std::string word, version, hash, last;
     std::size_t count = 0;
     Plan plan;
-    constexpr std::size_t most = 1'000'000;
+    // No memory for what the file does not hold: a position is three digits and three blanks at least.
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(planFile(), error);
+    if (error) return std::nullopt;
+    const std::uintmax_t most = size / 6;
     if (!(in >> word >> version >> hash >> count >> plan.coverage) || word != "mirrorstreet-plan" ||
         version != "1" || hash != hex(contentHash_) || count > most || !std::isfinite(plan.coverage))
         return std::nullopt;

@@ -232,7 +232,7 @@ TEST_F(StoreTest, noMemoryIsTakenForTexelsThatTheFileCannotHold) {
     writeBytes(store.file(0), bytes);
     const auto loaded = store.load(0);
     EXPECT_FALSE(loaded.map);
-    EXPECT_NE(loaded.damage.find("more texels than it can hold"), std::string::npos) << loaded.damage;
+    EXPECT_NE(loaded.damage.find("more than the file can hold"), std::string::npos) << loaded.damage;
 }
 
 TEST_F(StoreTest, rubbishIsReported) {
