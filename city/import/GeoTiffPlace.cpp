@@ -5,6 +5,7 @@
 #include <geotiff/geovalues.h>
 #include <geotiff/xtiffio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -21,6 +22,9 @@ constexpr ttag_t matrixTag = 34264;
 constexpr ttag_t gdalNoDataTag = 42113;
 /// Pixels whose sides differ by less are square: a hundredth of a cell over 65536 cells.
 constexpr double squareTolerance = 1e-7;
+
+/// A tile may be larger than the image that it holds; up to here that is nobody's harm. Bytes.
+constexpr double harmlessTile = 16 << 20;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
     throw std::runtime_error("heightfield " + file.string() + ": " + what);
@@ -79,6 +83,33 @@ double metresPerUnit(const std::filesystem::path& file, GTIF* keys) {
     refuse(file,
            "its unit of length (EPSG:" + std::to_string(*unit) +
                ", GeoTIFF key ProjLinearUnits) is not known here; convert it to metres with gdalwarp -t_srs");
+}
+
+/// A tag's value, or its default as libtiff knows it.
+template <class T>
+T field(TIFF* tiff, ttag_t tag) {
+    T value{};
+    return TIFFGetFieldDefaulted(tiff, tag, &value) == 1 ? value : T{};
+}
+
+/// How many times its size a file can unpack to; nullopt for what is not taken.
+std::optional<std::uint64_t> greatestRatio(std::uint16_t compression) {
+    switch (compression) {
+        case COMPRESSION_NONE:
+            return 1;
+        case COMPRESSION_PACKBITS:
+            return 64;  // 128 bytes from two
+        case COMPRESSION_LZW:
+            return 2731;  // a table of 4096 strings, each a byte longer than one before: 4096 bytes from 12
+                          // bits
+        case COMPRESSION_DEFLATE:
+        case COMPRESSION_ADOBE_DEFLATE:
+            return 1032;  // zlib's documentation
+        case COMPRESSION_ZSTD:
+            return 32768;  // RFC 8878: blocks of 128 KiB from a header of three bytes and one byte
+        default:
+            return std::nullopt;
+    }
 }
 
 }  // namespace
@@ -148,9 +179,38 @@ void requireWholeTiff(const std::filesystem::path& file) {
     const QuietTiff quiet;
     const std::unique_ptr<TIFF, decltype(&XTIFFClose)> tiff(XTIFFOpen(file.c_str(), "r"), &XTIFFClose);
     if (!tiff) refuse(file, "its TIFF header cannot be read; fetch or export it again");
+    const auto ratio = greatestRatio(field<std::uint16_t>(tiff.get(), TIFFTAG_COMPRESSION));
+    if (!ratio)
+        refuse(file, "it is packed as pictures or faxes are (TIFF compression " +
+                         std::to_string(field<std::uint16_t>(tiff.get(), TIFFTAG_COMPRESSION)) +
+                         "); write it anew with gdal_translate -co COMPRESS=DEFLATE");
+    const std::uint16_t bits = field<std::uint16_t>(tiff.get(), TIFFTAG_BITSPERSAMPLE);
+    const std::uint16_t samples = field<std::uint16_t>(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
+    const std::uint16_t meaning = field<std::uint16_t>(tiff.get(), TIFFTAG_PHOTOMETRIC);
+    const std::uint16_t kind = field<std::uint16_t>(tiff.get(), TIFFTAG_SAMPLEFORMAT);
+    if ((bits != 8 && bits != 16 && bits != 32 && bits != 64) || kind > SAMPLEFORMAT_IEEEFP || samples < 1 ||
+        (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_RGB))
+        refuse(file, "its values are no heights (" + std::to_string(samples) + " of " + std::to_string(bits) +
+                         " bits, sample format " + std::to_string(kind) + ", photometric " +
+                         std::to_string(meaning) + "); write it anew with gdal_translate -ot Float32");
+
     const std::uint64_t size = std::filesystem::file_size(file);
+    const std::uint64_t width = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH),
+                        height = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH);
     const bool tiled = TIFFIsTiled(tiff.get()) != 0;
-    const std::uint32_t count = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
+    const std::uint64_t pixel = std::uint64_t{samples} * bits / 8;
+    // The header's own limits: 2^32 each, of 2^19 bytes; as floating point numbers they do not overflow.
+    const double most = static_cast<double>(*ratio) * static_cast<double>(size);
+    const double tile = tiled
+                            ? static_cast<double>(field<std::uint32_t>(tiff.get(), TIFFTAG_TILEWIDTH)) *
+                                  static_cast<double>(field<std::uint32_t>(tiff.get(), TIFFTAG_TILELENGTH)) *
+                                  static_cast<double>(pixel)
+                            : 0;
+    const std::uint64_t count = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
+    if (static_cast<double>(width) * static_cast<double>(height) * static_cast<double>(pixel) > most ||
+        tile > std::max(most, harmlessTile) || count > size)
+        refuse(file, "its header names " + std::to_string(width) + " x " + std::to_string(height) +
+                         " cells, more than the file can hold; fetch or export it again");
     for (std::uint32_t k = 0; k < count; ++k) {
         const std::uint64_t offset = TIFFGetStrileOffset(tiff.get(), k);
         const std::uint64_t bytes = TIFFGetStrileByteCount(tiff.get(), k);

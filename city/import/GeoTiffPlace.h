@@ -19,8 +19,12 @@ struct GeoTiffPlace {
 /// place that a heightfield cannot have (rotated, not square, in degrees, not finite).
 GeoTiffPlace readGeoTiffPlace(const std::filesystem::path& file);
 
-/// OpenImageIO fills in what is missing at the end of a TIFF file; this throws std::runtime_error, one
-/// sentence, where the strips or tiles that the header names are not all within the file.
+/// What OpenImageIO and libtiff must not be given. Throws std::runtime_error, one sentence, where the strips
+/// or tiles that the header names are not all within the file (OpenImageIO fills in what is missing) or could
+/// not unpack to as many cells as it names; where values are not numbers of 8, 16, 32 or 64 bits, but colours
+/// of a palette or ink; where they are packed by other means than those that keep heights as they are (LZW,
+/// deflate, PackBits, Zstandard): for pictures, faxes and films there are decoders in libtiff that nobody
+/// needs here.
 void requireWholeTiff(const std::filesystem::path& file);
 
 }  // namespace city

@@ -8,15 +8,18 @@
 #pragma GCC diagnostic pop
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
 
 #include "city/import/GeoTiffPlace.h"
+#include "city/terrain/ExrHeader.h"
 
 namespace city {
 
@@ -76,6 +79,19 @@ void convert(const std::vector<unsigned char>& bytes, std::vector<double>& value
     }
 }
 
+/// OpenImageIO's name of the file's format.
+const char* formatOf(const fs::path& file) {
+    std::array<char, 4> first{};
+    std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+    const std::string_view mark(first.data(), first.size());
+    using namespace std::string_view_literals;
+    if (mark == "\x76\x2f\x31\x01"sv) return "openexr";
+    // Little- and big-endian, classic and BigTIFF.
+    for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
+        if (mark == tiff) return "tiff";
+    refuse(file, "it cannot be read as an image of heights; give an EXR or TIFF file");
+}
+
 class Reader {
   public:
     explicit Reader(const fs::path& file) : file_(file) {
@@ -84,10 +100,22 @@ class Reader {
         if (fs::is_directory(file, error)) refuse(file, "this is a folder; name a file in it");
         if (fs::file_size(file, error) == 0 && !error)
             refuse(file, "the file is empty (0 bytes); fetch or export it again");
-        input_ = OIIO::ImageInput::open(file.string());
-        if (!input_)
-            refuse(file, "it cannot be read as an image (" + oneLine(OIIO::geterror()) +
-                             "); give an EXR or TIFF file");
+        // By its first bytes, not by its name: OpenImageIO would try its thirty readers one after another.
+        const char* format = formatOf(file);
+        if (std::string_view(format) == "tiff") {
+            requireWholeTiff(file);
+        } else if (const ExrHeader header = readExrHeader(file); !header.fault.empty()) {
+            refuse(file, header.fault + "; fetch or export it again");
+        } else if (header.compression >= ExrHeader::Compression::b44) {
+            refuse(file,
+                   "it is packed as pictures are (B44 or DWA), which loses heights; export it with ZIP");
+        }
+        input_ = OIIO::ImageInput::create(format);
+        OIIO::ImageSpec opened;
+        if (!input_ || !input_->open(file.string(), opened))
+            refuse(file, "it cannot be read as an image (" +
+                             oneLine(input_ ? input_->geterror() : OIIO::geterror()) +
+                             "); fetch or export it again");
         const OIIO::ImageSpec& s = input_->spec();
         if (s.width < 1 || s.height < 1 || s.depth > 1 || s.nchannels < 1)
             refuse(file, "its header names " + std::to_string(s.width) + " x " + std::to_string(s.height) +
@@ -164,11 +192,16 @@ class Reader {
         bandEnd_ = std::min(s.height, bandStart_ + rows);
         band_.resize(static_cast<std::size_t>(bandEnd_ - bandStart_) * static_cast<std::size_t>(s.width) *
                      type.size());
-        const bool read =
-            s.tile_width > 0
-                ? input_->read_tiles(0, 0, s.x, s.x + s.width, s.y + bandStart_, s.y + bandEnd_, 0, 1, 0, 1,
-                                     type, band_.data())
-                : input_->read_scanlines(0, 0, s.y + bandStart_, s.y + bandEnd_, 0, 0, 1, type, band_.data());
+        const int begin = s.y + bandStart_, end = s.y + bandEnd_;
+        // As they stand where that can be: OpenImageIO makes room for 64 MiB to convert a row.
+        const bool asTheyStand = s.channelformats.empty() && type == s.format;
+        bool read = false;
+        if (s.tile_width > 0)
+            read = input_->read_tiles(0, 0, s.x, s.x + s.width, begin, end, 0, 1, 0, 1, type, band_.data());
+        else if (asTheyStand)
+            read = input_->read_native_scanlines(0, 0, begin, end, 0, 0, 1, band_.data());
+        else
+            read = input_->read_scanlines(0, 0, begin, end, 0, 0, 1, type, band_.data());
         if (!read)
             refuse(file_, "rows " + std::to_string(bandStart_) + " to " + std::to_string(bandEnd_ - 1) +
                               " cannot be read (" + oneLine(input_->geterror()) +
@@ -186,7 +219,6 @@ class Reader {
 LoadedHeightfield loadHeightfield(const fs::path& file, float cellSize) {
     Reader reader(file);
     const OIIO::ImageSpec& spec = reader.spec();
-    if (std::string_view(reader.format()) == "tiff") requireWholeTiff(file);
     std::vector<std::string> notes;
     std::string coordinateSystem;
     std::optional<double> noData;

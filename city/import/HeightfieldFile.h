@@ -15,8 +15,9 @@ struct LoadedHeightfield {
     std::vector<std::string> notes;  ///< what was guessed or dropped, one sentence each
 };
 
-/// Loads a one-channel image of heights in metres: float EXR and TIFF as `saveHeightfield` writes them, and
-/// whatever else OpenImageIO reads, integers taken as they stand (not divided by their range). GeoTIFF: cell
+/// Loads a one-channel image of heights in metres: EXR and TIFF as `saveHeightfield` writes them, and others
+/// of these formats that keep heights as they are (see requireWholeTiff and readExrHeader), whatever the
+/// file's ending; integers taken as they stand (not divided by their range). GeoTIFF: cell
 /// size and corner from the pixel scale and tie point (tags 33550, 33922) or the matrix (34264),
 /// pixel-is-point honoured, feet converted, GDAL's NODATA (42113) becomes NaN. A file without place gets
 /// cells of `cellSize` from (0, 0), and a note. Of several channels the first counts, and a note says so.
