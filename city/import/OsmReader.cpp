@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace city {
 
@@ -46,9 +47,9 @@ void keepNewest(std::unordered_map<osmium::object_id_type, T*>& map, T& object) 
     if (!fresh && place->second->version() < object.version()) place->second = &object;
 }
 
-Objects readObjects(const std::filesystem::path& file) {
+Objects readObjects(const osmium::io::File& file) {
     Objects objects;
-    osmium::io::Reader reader{osmium::io::File{file.string()}};
+    osmium::io::Reader reader{file};
     objects.headerBox = reader.header().joined_boxes();
     while (osmium::memory::Buffer buffer = reader.read()) {
         for (auto& item : buffer.select<osmium::OSMObject>()) {
@@ -225,8 +226,7 @@ class AreaBuilder {
             return assembler(relation, members, buffer);
         });
         if (!built) return;
-        if (relation.tags().has_key("building"))
-            for (const osmium::object_id_type outer : outers) outersOfBuildings_.push_back(outer);
+        if (relation.tags().has_key("building")) outersOfBuildings_.insert(outers.begin(), outers.end());
     }
 
     /// After all relations: a way that is the outer ring of a building relation is not a building again.
@@ -234,9 +234,7 @@ class AreaBuilder {
         if (way.nodes().size() < 4 || way.nodes().front().ref() != way.nodes().back().ref() ||
             !isArea(way.tags()))
             return;
-        if (way.tags().has_key("building") && std::find(outersOfBuildings_.begin(), outersOfBuildings_.end(),
-                                                        way.id()) != outersOfBuildings_.end())
-            return;
+        if (way.tags().has_key("building") && outersOfBuildings_.contains(way.id())) return;
         // A ring with unknown nodes is closed by chords between those that are known.
         std::vector<glm::vec2> known;
         for (const osmium::NodeRef& node : way.nodes())
@@ -286,7 +284,7 @@ class AreaBuilder {
     const Projection& projection_;
     OsmData& data_;
     osmium::area::AssemblerConfig config_;
-    std::vector<osmium::object_id_type> outersOfBuildings_;
+    std::unordered_set<osmium::object_id_type> outersOfBuildings_;
 };
 
 Extent extentOf(const Objects& objects, const std::filesystem::path& file) {
@@ -302,18 +300,12 @@ Extent extentOf(const Objects& objects, const std::filesystem::path& file) {
     return *robust;
 }
 
-}  // namespace
-
-OsmData readOsm(const std::filesystem::path& file, std::optional<double> size) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) fail(file, "no such file; check the path");
-    if (!std::filesystem::is_regular_file(file, error))
-        fail(file, "not a file; name an .osm or .osm.pbf file");
-    if (std::filesystem::file_size(file, error) == 0) fail(file, "is empty; download it again");
-
+/// `file`: for messages.
+OsmData readFrom(const osmium::io::File& source, const std::filesystem::path& file,
+                 std::optional<double> size) {
     Objects objects;
     try {
-        objects = readObjects(file);
+        objects = readObjects(source);
     } catch (const std::exception& e) {
         fail(file, std::string("cannot be read as OpenStreetMap data (") + e.what() +
                        "); it is truncated or damaged: download it again");
@@ -355,6 +347,23 @@ OsmData readOsm(const std::filesystem::path& file, std::optional<double> size) {
     for (osmium::Relation* relation : inOrder(objects.relations)) builder.relation(*relation);
     for (osmium::Way* way : ways) builder.way(*way);
     return data;
+}
+
+}  // namespace
+
+OsmData readOsm(const std::filesystem::path& file, std::optional<double> size) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) fail(file, "no such file; check the path");
+    if (!std::filesystem::is_regular_file(file, error))
+        fail(file, "not a file; name an .osm or .osm.pbf file");
+    if (std::filesystem::file_size(file, error) == 0) fail(file, "is empty; download it again");
+    return readFrom(osmium::io::File{file.string()}, file, size);
+}
+
+OsmData readOsm(std::string_view bytes, const std::string& format, std::optional<double> size) {
+    const std::filesystem::path name = "OpenStreetMap data";
+    if (bytes.empty()) fail(name, "is empty");
+    return readFrom(osmium::io::File{bytes.data(), bytes.size(), format}, name, size);
 }
 
 }  // namespace city

@@ -3,6 +3,6 @@
 #include "tests/fuzz/FuzzTarget.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::feed({data, size}, ".exr", [](const auto& file) { city::loadHeightfield(file); });
+    fuzz::feed({data, size}, "input.exr", [](const auto& file) { city::loadHeightfield(file); });
     return 0;
 }

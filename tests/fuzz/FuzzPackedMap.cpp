@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::uint64_t hash = reflection::packedFileHash(std::span(bytes).first(end));
         std::memcpy(bytes.data() + end, &hash, sizeof hash);
     }
-    fuzz::feed(bytes, ".packed", [](const auto& file) {
+    fuzz::feed(bytes, "input.packed", [](const auto& file) {
         const auto map = reflection::loadPacked(file, {7, 8, 9});
         if (!map) return;
         // What was read can be used.

@@ -9,11 +9,17 @@
 
 namespace fuzz {
 
-/// What a reader of files is fed with: any bytes. It may refuse them with a std::runtime_error or
-/// std::invalid_argument, as it promises; whatever else leaves it ends the program, and so does what a
-/// sanitizer finds.
-void feed(std::span<const std::uint8_t> bytes, const std::string& ending,
+/// A reader of files may refuse any bytes with a std::runtime_error or std::invalid_argument, as it promises;
+/// whatever else leaves it ends the program, and so does what a sanitizer finds.
+void orRefuse(const std::function<void()>& read);
+
+/// Feeds a reader of files with any bytes. `name`: of the file, in a folder of this process alone. The file
+/// stays there until the next call.
+void feed(std::span<const std::uint8_t> bytes, const std::string& name,
           const std::function<void(const std::filesystem::path&)>& read);
+
+/// True for one input in `count`, the same ones in every run: for what costs too much to be done with all.
+bool oneIn(std::uint64_t count, std::span<const std::uint8_t> bytes);
 
 }  // namespace fuzz
 
