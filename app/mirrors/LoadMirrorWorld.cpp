@@ -1,0 +1,213 @@
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "app/mirrors/LitShapes.h"
+#include "app/mirrors/MirrorWorld.h"
+
+namespace app {
+
+namespace {
+
+using nlohmann::json;
+
+/// One value of the file and the way to it.
+class Place {
+  public:
+    Place(const json& value, std::string file, std::string path)
+        : value_(value), file_(std::move(file)), path_(std::move(path)) {}
+
+    [[noreturn]] void refuse(const std::string& what, const std::string& remedy) const {
+        throw std::runtime_error(file_ + (path_.empty() ? "" : ", " + path_) + ": " + what + "; " + remedy +
+                                 ".");
+    }
+    Place at(const std::string& key) const {
+        object();
+        if (!value_.contains(key)) refuse("'" + key + "' is missing", "add it, see data/scenes/README.md");
+        return {value_.at(key), file_, path_.empty() ? key : path_ + "." + key};
+    }
+    bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
+    /// Refuses every name but these: a misspelt one would otherwise be silently without effect.
+    void only(const std::set<std::string>& names) const {
+        object();
+        for (const auto& [key, v] : value_.items()) {
+            if (names.contains(key)) continue;
+            std::string list;
+            for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+            refuse("there is no '" + key + "' here", "use only " + list);
+        }
+    }
+    std::vector<Place> items() const {
+        if (!value_.is_array()) refuse("is not a list", "write [ ... ]");
+        std::vector<Place> all;
+        for (std::size_t i = 0; i < value_.size(); ++i)
+            all.emplace_back(value_[i], file_, path_ + "[" + std::to_string(i) + "]");
+        return all;
+    }
+    double number(double low, double high) const {
+        if (!value_.is_number()) refuse("is not a number", "write a plain finite number");
+        const double v = value_.get<double>();
+        if (!(v >= low && v <= high)) {
+            std::ostringstream range;
+            range << v << " lies outside " << low << " .. " << high;
+            refuse(range.str(), "choose a value within it");
+        }
+        return v;
+    }
+    int whole(int low, int high) const {
+        if (!value_.is_number_integer()) refuse("is not a whole number", "write one, without a point");
+        return static_cast<int>(number(low, high));
+    }
+    std::string text() const {
+        if (!value_.is_string()) refuse("is not a text", "put it in quotes");
+        return value_.get<std::string>();
+    }
+    glm::dvec3 vector(double low = -1e6, double high = 1e6) const {
+        const std::vector<Place> three = items();
+        if (three.size() != 3)
+            refuse("has " + std::to_string(three.size()) + " numbers", "write three, [x, y, z]");
+        return {three[0].number(low, high), three[1].number(low, high), three[2].number(low, high)};
+    }
+    glm::vec3 share() const { return glm::vec3(vector(0, 1)); }
+
+  private:
+    void object() const {
+        if (!value_.is_object()) refuse("is not an object", "write { ... }");
+    }
+    const json& value_;
+    std::string file_, path_;
+};
+
+reflection::MirrorSurface surfaceOf(const Place& p) {
+    reflection::MirrorSurface surface;
+    surface.reflectance = p.at("reflectance").share();
+    if (p.has("roughness")) surface.roughness = static_cast<float>(p.at("roughness").number(0, 1));
+    return surface;
+}
+
+glm::vec3 tintOf(const Place& p) {
+    return p.has("tint") ? p.at("tint").share() : glm::vec3(0);
+}
+
+void readMirror(const Place& p, MirrorWorld& world) {
+    p.only({"kind", "corners", "reflectance", "roughness", "tint"});
+    std::vector<glm::dvec3> corners;
+    for (const Place& c : p.at("corners").items()) corners.push_back(c.vector());
+    const reflection::MirrorResult made = reflection::MirrorPlane::make(corners, surfaceOf(p));
+    if (made.status != reflection::MirrorStatus::ok) {
+        const std::string says(reflection::remedyOf(made.status));
+        const std::size_t parted = says.find("; ");
+        p.at("corners").refuse(says.substr(0, parted), says.substr(parted + 2));
+    }
+    world.mirrors.push_back({{world.mirrors.size(), made.mirror, reflection::Mirror::alone}, tintOf(p)});
+}
+
+void readCurved(const Place& p, MirrorWorld& world) {
+    p.only({"kind", "centre", "radius", "slices", "stacks", "reflectance", "roughness", "tint"});
+    MirrorWorld::Curved c;
+    c.reflector.id = world.curved.size();
+    c.reflector.centre = p.at("centre").vector();
+    c.reflector.radius = p.at("radius").number(1e-3, 1e6);
+    c.reflector.surface = surfaceOf(p);
+    c.tint = tintOf(p);
+    c.mesh = litBall(glm::vec3(c.reflector.centre), static_cast<float>(c.reflector.radius),
+                     p.at("slices").whole(3, 512), p.at("stacks").whole(2, 512), glm::vec3(1));
+    world.curved.push_back(std::move(c));
+}
+
+void readObject(const Place& p, MirrorWorld& world) {
+    const std::string kind = p.at("kind").text();
+    LitMesh mesh;
+    if (kind == "mirror") return readMirror(p, world);
+    if (kind == "chrome ball") return readCurved(p, world);
+    if (kind == "box") {
+        p.only({"kind", "low", "high", "colour"});
+        const glm::vec3 low(p.at("low").vector()), high(p.at("high").vector());
+        for (int i = 0; i < 3; ++i)
+            if (!(low[i] < high[i]))
+                p.refuse("the box has no volume", "make every number of 'low' smaller than that of 'high'");
+        mesh = litBox(low, high, p.at("colour").share());
+        city::Aabb solid;
+        solid.extend(low);
+        solid.extend(high);
+        world.occluders.push_back(solid);
+    } else if (kind == "panel") {
+        p.only({"kind", "origin", "u", "v", "columns", "rows", "colour", "second"});
+        const glm::vec3 u(p.at("u").vector()), v(p.at("v").vector());
+        if (!(glm::length(glm::cross(u, v)) > 0))
+            p.refuse("'u' and 'v' span no area", "make them differ in direction");
+        const glm::vec3 colour = p.at("colour").share();
+        mesh =
+            litPanel(glm::vec3(p.at("origin").vector()), u, v, p.at("columns").whole(1, 1000),
+                     p.at("rows").whole(1, 1000), colour, p.has("second") ? p.at("second").share() : colour);
+    } else if (kind == "ball") {
+        p.only({"kind", "centre", "radius", "slices", "stacks", "colour"});
+        mesh =
+            litBall(glm::vec3(p.at("centre").vector()), static_cast<float>(p.at("radius").number(1e-3, 1e6)),
+                    p.at("slices").whole(3, 512), p.at("stacks").whole(2, 512), p.at("colour").share());
+    } else if (kind == "pillar") {
+        p.only({"kind", "foot", "radius", "height", "slices", "colour"});
+        mesh =
+            litPillar(glm::vec3(p.at("foot").vector()), static_cast<float>(p.at("radius").number(1e-3, 1e6)),
+                      static_cast<float>(p.at("height").number(1e-3, 1e6)), p.at("slices").whole(3, 512),
+                      p.at("colour").share());
+    } else {
+        p.at("kind").refuse("there is no '" + kind + "'",
+                            "choose mirror, chrome ball, box, panel, ball or pillar");
+    }
+    bakeLight(mesh);
+    world.objects.push_back(std::move(mesh));
+}
+
+}  // namespace
+
+MirrorWorld parseMirrorWorld(const std::string& text, const std::string& name) {
+    json document;
+    try {
+        document = json::parse(text);
+    } catch (const json::exception& e) {
+        throw std::runtime_error(name + ": is not JSON (" + e.what() + "); correct it there.");
+    }
+    const Place top(document, name, "");
+    top.only({"name", "source", "licence", "depth", "camera", "objects", "triangles", "beyond", "sky"});
+    MirrorWorld world;
+    world.name = top.at("name").text();
+    top.at("source").text();
+    top.at("licence").text();
+    world.depth = top.at("depth").whole(0, 32);
+    const Place camera = top.at("camera");
+    camera.only({"eye", "target", "fov_y_deg"});
+    world.eye = camera.at("eye").vector();
+    world.target = camera.at("target").vector();
+    if (world.eye == world.target) camera.refuse("'eye' and 'target' are the same point", "move one of them");
+    world.fovYDegrees = camera.at("fov_y_deg").number(1, 170);
+    if (top.has("beyond")) world.beyond = top.at("beyond").share();
+    if (top.has("sky")) {
+        const Place sky = top.at("sky");
+        sky.only({"zenith", "horizon", "nadir"});
+        world.zenith = sky.at("zenith").share();
+        world.horizon = sky.at("horizon").share();
+        world.nadir = sky.at("nadir").share();
+    }
+    for (const Place& p : top.at("objects").items()) readObject(p, world);
+    const Place triangles = top.at("triangles");
+    const auto counted = static_cast<int>(world.triangles());
+    if (triangles.whole(0, 100000000) != counted)
+        triangles.refuse("the objects have " + std::to_string(counted) + " triangles, not the number given",
+                         "correct the number or the objects");
+    return world;
+}
+
+MirrorWorld loadMirrorWorld(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    if (!in || !(text << in.rdbuf()))
+        throw std::runtime_error(file.string() +
+                                 ": cannot be read, or is empty; check the name and its permissions.");
+    return parseMirrorWorld(text.str(), file.string());
+}
+
+}  // namespace app
