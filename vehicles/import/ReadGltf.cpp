@@ -3,6 +3,7 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wpedantic"
+#include <stb/stb_image.h>
 #include <tiny_gltf.h>
 #pragma GCC diagnostic pop
 
@@ -17,6 +18,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <limits>
 #include <stdexcept>
 
 namespace vehicles {
@@ -64,6 +66,58 @@ void checkHeader(const std::vector<unsigned char>& bytes, const Complaint& compl
     if (header[2] > bytes.size())
         complaint.raise("the file is cut off: its header promises " + std::to_string(header[2]) +
                         " bytes, there are " + std::to_string(bytes.size()) + "; copy it again");
+}
+
+/// tinygltf's own loader of pictures would also take film and shop formats that glTF does not have, and make
+/// room for as many pixels as they name: deflate shrinks by 1032 at most (zlib's documentation), and a JPEG
+/// picture spends a bit or more on 64 pixels. `bytes` are at least `size`.
+bool loadPicture(tinygltf::Image& image, int index, std::string& error, const unsigned char* bytes,
+                 int size) {
+    constexpr std::array<unsigned char, 4> png{0x89, 'P', 'N', 'G'};
+    constexpr std::array<unsigned char, 3> jpeg{0xff, 0xd8, 0xff};
+    const auto begins = [&](const auto& mark) {
+        return size >= static_cast<int>(mark.size()) && std::equal(mark.begin(), mark.end(), bytes);
+    };
+    const std::string place = "image " + std::to_string(index);
+    int across = 0, down = 0, channels = 0;
+    if ((!begins(png) && !begins(jpeg)) ||
+        stbi_info_from_memory(bytes, size, &across, &down, &channels) != 1) {
+        error += place + " is neither a PNG nor a JPEG picture";
+        return false;
+    }
+    if (across < 1 || down < 1 || std::int64_t{across} * down > std::int64_t{1032} * size) {
+        error += place + " names " + std::to_string(across) + " x " + std::to_string(down) +
+                 " pixels, more than it can hold";
+        return false;
+    }
+    std::string warning;
+    return tinygltf::LoadImageData(&image, index, &error, &warning, 0, 0, bytes, size, nullptr);
+}
+
+/// For tinygltf. It does not look whether a view lies within its buffer: see loadPictures.
+bool loadOtherFilesPicture(tinygltf::Image* image, int index, std::string* error, std::string*, int, int,
+                           const unsigned char* bytes, int size, void*) {
+    return image->bufferView >= 0 || loadPicture(*image, index, *error, bytes, size);
+}
+
+/// Those within the file itself.
+bool loadPictures(tinygltf::Model& model, std::string& error) {
+    for (std::size_t i = 0; i < model.images.size(); ++i) {
+        tinygltf::Image& image = model.images[i];
+        if (image.bufferView < 0) continue;
+        // That they exist, tinygltf has checked.
+        const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(image.bufferView)];
+        const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+        if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset ||
+            view.byteLength > std::numeric_limits<int>::max()) {
+            error += "image " + std::to_string(i) + " reaches past its buffer";
+            return false;
+        }
+        if (!loadPicture(image, static_cast<int>(i), error, data.data() + view.byteOffset,
+                         static_cast<int>(view.byteLength)))
+            return false;
+    }
+    return true;
 }
 
 class Reader {
@@ -118,8 +172,8 @@ class Reader {
         if (index < 0 || index >= static_cast<int>(model_.nodes.size()))
             complaint_.raise(place + " does not exist; export it again");
         // A tree cannot be deeper than this in a sane file, and a cycle would never end; a shared node may
-        // repeat.
-        if (depth > 64 || ++visited_ > 100000)
+        // repeat, but not so that each level has twice the nodes of that above it.
+        if (depth > 64 || ++visited_ > 16 * model_.nodes.size())
             complaint_.raise(place + ": the nodes form a cycle or nest too deeply; export it again");
         const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
         const glm::mat4 world = parent * transformOf(node);
@@ -283,6 +337,10 @@ class Reader {
             }
         else
             for (std::size_t i = 0; i < count; ++i) corner.push_back(i);
+        // Also triangles without a surface take their time.
+        corners_ += count + corner.size();
+        if (corners_ > 4 * std::size_t{20'000'000})
+            complaint_.raise("it has more than 20 million triangles; reduce the mesh first");
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
             if (scene_.triangles.size() >= 20'000'000)
                 complaint_.raise("it has more than 20 million triangles; reduce the mesh first");
@@ -348,7 +406,7 @@ class Reader {
     const tinygltf::Model& model_;
     const Complaint& complaint_;
     GltfScene scene_;
-    std::size_t visited_ = 0;
+    std::size_t visited_ = 0, corners_ = 0;
 };
 
 }  // namespace
@@ -359,12 +417,14 @@ GltfScene readGltf(const std::filesystem::path& file) {
     checkHeader(bytes, complaint);
     tinygltf::Model model;
     tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(&loadOtherFilesPicture, nullptr);
     std::string error, warning;
     bool good = false;
     try {
-        good =
-            loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
-                                        static_cast<unsigned int>(bytes.size()), file.parent_path().string());
+        good = loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
+                                           static_cast<unsigned int>(bytes.size()),
+                                           file.parent_path().string()) &&
+               loadPictures(model, error);
     } catch (const std::exception& e) {
         error = e.what();
     }

@@ -1,0 +1,10 @@
+// tinygltf with its parser and its pictures' decoder, in place of the library's: under sanitizers, and seen by
+// the fuzzer.
+#define TINYGLTF_IMPLEMENTATION
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+#include <tiny_gltf.h>
