@@ -66,6 +66,7 @@ ReflectionSettings settingsFor(const SweepPoint& point) {
     settings.detail = ReflectionDetail{point.texelBudget, point.texelsPerPixel, point.errorThreshold,
                                        point.candidates, point.lookups};
     settings.everyFrame = point.everyFrame;
+    settings.parallax = point.parallax;
     settings.mapsInTurn = point.mapsInTurn;
     settings.mapsOn = MapsOn::automatic;
     if (point.faceSize > 0) {

@@ -59,6 +59,7 @@ nlohmann::ordered_json settingsOf(const SweepPoint& p) {
     if (p.method == "mem" && p.variant.empty()) {
         set["candidates"] = p.candidates;
         set["lookups"] = p.lookups;
+        set["parallax"] = p.parallax;
     }
     return set;
 }
@@ -103,6 +104,9 @@ std::vector<SweepPoint> comparedPoints(bool raytrace) {
     points.push_back(memPoint(Quality::medium, 0.5, 40'000));
     points.push_back(memPoint(Quality::medium, 0.5, 80'000));
     points.back().isDefault = points.back().severalViews = true;
+    points.push_back(memPoint(Quality::medium, 0.5, 80'000));
+    points.back().parallax = false;
+    points.back().setting += ", no parallax";
     points.push_back(memPoint(Quality::medium, 0.5, 160'000));
     points.push_back(everyFrame(memPoint(Quality::medium, 0.5, 0)));
     points.push_back(memPoint(Quality::high, 1, 200'000));

@@ -28,6 +28,7 @@ struct SweepPoint {
     double errorThreshold = 0.5;  ///< pixels
     double candidates = 3, lookups = 4;
     bool everyFrame = false;
+    bool parallax = true;
     std::uint32_t mapsInTurn = 0;  ///< 0: not in turn
     int faceSize = 0;              ///< 0: by the size on screen
     // Of rays.

@@ -31,6 +31,7 @@ struct ReflectionSettings {
     Quality quality = Quality::medium;
     bool everyFrame = false;       ///< rebuild every visible map every frame
     bool vehiclesInMaps = true;    ///< other vehicles appear in each vehicle's map
+    bool parallax = true;          ///< maps of `mem` are looked up where a pixel's own ray ends
     bool shareMaps = true;         ///< small vehicles may show a neighbour's map
     std::uint32_t mapsInTurn = 0;  ///< see PlanOptions
     int sizeClass = -1;            ///< see PlanOptions
@@ -46,6 +47,9 @@ ReflectionDetail detailOf(const ReflectionSettings& settings);
 PlanOptions planOptionsFor(const ReflectionSettings& settings);
 /// Mesh, lookup and candidate count of a local map of this size.
 reflection::LocalMapRequest requestFor(const ReflectionSettings& settings, int faceSize);
+/// Whether maps are looked up with parallax: the distances of the published methods' maps are not those of
+/// what they show.
+bool parallaxIn(const ReflectionSettings& settings);
 std::size_t candidateCount(const ReflectionSettings& settings);
 
 struct ReflectionCounters {

@@ -129,7 +129,7 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
 
         double pixels = std::numeric_limits<double>::infinity();
         if (map.built) {
-            const double moved = glm::distance(centre, map.centre) + map.neighbourMotion;
+            const double moved = options.ownMotion * glm::distance(centre, map.centre) + map.neighbourMotion;
             pixels = errorOnScreen(vehicle.diameterPixels, moved);
             // A map of the wrong detail is replaced when its turn comes; until then the old one is shown.
             if (sizeClass != map.slot.sizeClass)

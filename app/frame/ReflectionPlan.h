@@ -44,7 +44,10 @@ struct PlanOptions {
         80'000;                   ///< texels built a frame; at least one map is built whatever it costs
     float texelsPerPixel = 0.5f;  ///< face size wanted for each pixel of the vehicle's projected diameter
     float errorThreshold = 0.5f;  ///< pixels of shift of a reflected feature that are let stand
-    bool everyFrame = false;      ///< rebuild all visible maps every frame (measuring; the paper's way)
+    /// Share of its vehicle's own motion by which a map ages: less than 1 where it is looked up with
+    /// parallax, since it stays right for all that its centre saw.
+    float ownMotion = 1;
+    bool everyFrame = false;  ///< rebuild all visible maps every frame (measuring; the paper's way)
     /// Maps of one size class at most: what every OpenGL 4.5 grants (table 23.53: arrays of 2048 layers, six
     /// a cube).
     int layersAtMost = 341;

@@ -67,8 +67,8 @@ glm::vec3 plainSurroundings(const Lighting& lighting, const CoatedVertex& point,
 
 glm::vec3 vehicleRadiance(const Lighting& lighting, vehicles::Surface surface,
                           const vehicles::VehiclePose& pose, const glm::vec3& normal,
-                          const glm::vec3& towardsEye) {
-    const CoatedVertex point = coatedVertex(lighting, surface, pose, normal, 1);
+                          const glm::vec3& towardsEye, float sun) {
+    const CoatedVertex point = coatedVertex(lighting, surface, pose, normal, sun);
     const float fresnel = coatFresnel(point, glm::dot(normal, towardsEye));
     const glm::vec3 reflected = 2 * glm::dot(normal, towardsEye) * normal - towardsEye;
     return point.diffuse * (1 - fresnel) + plainSurroundings(lighting, point, reflected) * fresnel;
@@ -80,26 +80,6 @@ glm::mat3 worldFromVehicle(const vehicles::VehiclePose& pose) {
     const auto cp = static_cast<float>(std::cos(pose.pitch)), sp = static_cast<float>(std::sin(pose.pitch));
     // Columns: forward (nose up by the pitch), left, up.
     return {glm::vec3(ch * cp, sh * cp, sp), glm::vec3(-sh, ch, 0), glm::vec3(-ch * sp, -sh * sp, cp)};
-}
-
-void shadeForLocalMap(const vehicles::VehicleModel& model, const vehicles::VehiclePose& pose,
-                      const Lighting& lighting, const glm::dvec3& centre, reflection::MovingObject& object) {
-    object.positions.clear();
-    object.radiance.clear();
-    object.indices.clear();
-    if (model.levels.empty()) return;
-    const city::Mesh& mesh = model.levels.back().body;
-    const glm::mat3 rotation = worldFromVehicle(pose);
-    const glm::vec3 offset(pose.position - centre);
-    for (const city::Vertex& v : mesh.vertices) {
-        const glm::vec3 position = offset + rotation * v.position;
-        const float distance = glm::length(position);
-        const glm::vec3 towardsEye = distance > 0 ? -position / distance : glm::vec3(0, 0, 1);
-        object.positions.push_back(position);
-        object.radiance.push_back(vehicleRadiance(lighting, static_cast<vehicles::Surface>(v.material), pose,
-                                                  rotation * v.normal, towardsEye));
-    }
-    object.indices = mesh.indices;
 }
 
 }  // namespace app

@@ -52,7 +52,7 @@ VehicleGeometry::VehicleGeometry(std::span<const vehicles::VehicleModel> models)
         .attribute(4, 1, 4, GL_FLOAT, false, offsetof(VehicleInstance, row1))
         .attribute(5, 1, 4, GL_FLOAT, false, offsetof(VehicleInstance, row2))
         .attribute(6, 1, 4, GL_FLOAT, false, offsetof(VehicleInstance, paint))
-        .attribute(7, 1, 1, GL_FLOAT, false, offsetof(VehicleInstance, mapLayer))
+        .attribute(7, 1, 4, GL_FLOAT, false, offsetof(VehicleInstance, map))
         .indices(indices_.name());
 }
 

@@ -13,9 +13,9 @@ namespace app {
 namespace {
 
 VehicleInstance instanceOf(const glm::mat3& r, const glm::vec3& t, const vehicles::VehiclePose& pose,
-                           float layer) {
+                           const glm::vec4& map) {
     return {glm::vec4(r[0].x, r[1].x, r[2].x, t.x), glm::vec4(r[0].y, r[1].y, r[2].y, t.y),
-            glm::vec4(r[0].z, r[1].z, r[2].z, t.z), glm::vec4(pose.paint, pose.braking ? 1.f : 0.f), layer};
+            glm::vec4(r[0].z, r[1].z, r[2].z, t.z), glm::vec4(pose.paint, pose.braking ? 1.f : 0.f), map};
 }
 
 }  // namespace
@@ -25,11 +25,12 @@ VehiclePass::VehiclePass(std::span<const vehicles::VehicleModel> models) : geome
     // in software.
     mapSampler_ = reflection::gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
     for (std::size_t target = 0; target < 2; ++target) {
-        for (std::size_t mirror = 0; mirror < 3; ++mirror) {
+        for (const Mirror mirror : {Mirror::plain, Mirror::map, Mirror::parallax, Mirror::screen}) {
             std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
-            if (mirror == 1) defines.emplace_back("REFLECTIVE");
-            if (mirror == 2) defines.emplace_back("SCREEN");
-            programs_[target][mirror] =
+            if (mirror == Mirror::map || mirror == Mirror::parallax) defines.emplace_back("REFLECTIVE");
+            if (mirror == Mirror::parallax) defines.emplace_back("PARALLAX");
+            if (mirror == Mirror::screen) defines.emplace_back("SCREEN");
+            programs_[target][static_cast<std::size_t>(mirror)] =
                 reflection::gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
         }
     }
@@ -60,6 +61,9 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                                       float tolerance) {
     Counts counts;
     pieces_.clear();
+    const auto parallax = [&](std::size_t sizeClass) {
+        return reflections.textures != nullptr && reflections.textures->nearnessArrays[sizeClass] != 0;
+    };
     for (std::uint32_t index : chosen) {
         const vehicles::VehiclePose& pose = poses[index];
         if (pose.model >= geometry_.models().size()) continue;
@@ -81,11 +85,16 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                                 sizeClass < reflections.textures->cubeArrays.size() &&
                                 reflections.textures->cubeArrays[sizeClass] != 0;
         const std::int32_t group = reflective ? static_cast<std::int32_t>(sizeClass) : -1;
-        const auto layer = static_cast<float>(slot.layer);
+        glm::vec4 map(0, 0, 0, slot.layer);
+        if (reflective && parallax(sizeClass))
+            map = glm::vec4(
+                glm::vec3(reflections.textures->centres[sizeClass][static_cast<std::size_t>(slot.layer)] -
+                          view.eye),
+                map.w);
         const auto add = [&](const MeshRange& range, const VehicleInstance& instance) {
             if (!range.empty()) pieces_.push_back({group, range.firstIndex, range, instance});
         };
-        add(model.levels[level].body, instanceOf(rotation, position, pose, layer));
+        add(model.levels[level].body, instanceOf(rotation, position, pose, map));
         if (!model.levels[level].wheelsInBody && !model.wheelLevels.empty()) {
             std::size_t wheelLevel = 0;
             while (wheelLevel + 1 < model.wheelLevels.size() &&
@@ -94,7 +103,7 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
             const MeshRange& wheelMesh = model.wheelLevels[wheelLevel].mesh;
             for (const vehicles::VehicleModel::Wheel& wheel : model.wheels) {
                 add(wheelMesh, instanceOf(rotation * vehicleFromWheel(wheel, pose),
-                                          position + rotation * wheel.centre, pose, layer));
+                                          position + rotation * wheel.centre, pose, map));
             }
         }
         ++counts.vehicles;
@@ -119,11 +128,18 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
         const Piece& piece = pieces_[order_[first]];
         if (piece.sizeClass != used) {
             used = piece.sizeClass;
-            const std::size_t mirror = used >= 0 ? 1 : reflections.mirrored != 0 ? 2 : 0;
-            programs_[static_cast<std::size_t>(target)][mirror].use();
-            if (mirror == 2) glBindTextureUnit(3, reflections.mirrored);
-            if (used >= 0)
-                glBindTextureUnit(2, reflections.textures->cubeArrays[static_cast<std::size_t>(used)]);
+            const auto sizeClass = static_cast<std::size_t>(std::max(used, 0));
+            const Mirror mirror = used >= 0 ? (parallax(sizeClass) ? Mirror::parallax : Mirror::map)
+                                  : reflections.mirrored != 0 ? Mirror::screen
+                                                              : Mirror::plain;
+            const reflection::gl::Program& program =
+                programs_[static_cast<std::size_t>(target)][static_cast<std::size_t>(mirror)];
+            program.use();
+            if (mirror == Mirror::screen) glBindTextureUnit(3, reflections.mirrored);
+            if (used >= 0) glBindTextureUnit(2, reflections.textures->cubeArrays[sizeClass]);
+            if (mirror == Mirror::parallax) {
+                glBindTextureUnit(4, reflections.textures->nearnessArrays[sizeClass]);
+            }
         }
         glDrawElementsInstancedBaseVertexBaseInstance(
             GL_TRIANGLES, static_cast<GLsizei>(piece.range.indexCount), GL_UNSIGNED_INT,

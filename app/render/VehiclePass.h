@@ -41,6 +41,8 @@ class VehiclePass {
     glm::vec3 centreOf(const vehicles::VehiclePose& pose, const glm::dvec3& eye) const;
 
   private:
+    /// Where a vehicle finds what it mirrors.
+    enum class Mirror : std::uint8_t { plain, map, parallax, screen };
     struct Piece {
         std::int32_t sizeClass;  ///< -1: plain
         std::uint32_t firstIndex;
@@ -50,7 +52,7 @@ class VehiclePass {
 
     VehicleGeometry geometry_;
     reflection::gl::Sampler mapSampler_;
-    std::array<std::array<reflection::gl::Program, 3>, 2> programs_;  ///< [target][plain, maps, screen]
+    std::array<std::array<reflection::gl::Program, 4>, 2> programs_;  ///< [target][Mirror]
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> order_;
     std::vector<VehicleInstance> instances_;

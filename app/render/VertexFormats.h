@@ -48,10 +48,10 @@ struct VehicleInstance {
     glm::vec4 row0;  ///< rows of relativeFromVehicle: world axes, origin at the eye
     glm::vec4 row1;
     glm::vec4 row2;
-    glm::vec4 paint;     ///< rgb; w: 1 when braking
-    float mapLayer = 0;  ///< cube index of the local map
+    glm::vec4 paint;   ///< rgb; w: 1 when braking
+    glm::vec4 map{0};  ///< centre of the local map, relative to the eye; w: its cube index
 };
-static_assert(sizeof(VehicleInstance) == 68);
+static_assert(sizeof(VehicleInstance) == 80);
 
 /// A range of an index buffer over a range of a vertex buffer.
 struct MeshRange {

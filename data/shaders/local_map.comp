@@ -10,6 +10,10 @@ layout(std430, binding = 3) readonly restrict buffer Reciprocals { float recipro
 /// Moving objects: colour, and depth in the last, beyond all where there is none.
 layout(std430, binding = 4) readonly restrict buffer Overlays { vec4 overlays[]; };
 
+/// PackedMips::nearness, where it is wanted.
+layout(r16f, binding = 4) writeonly restrict uniform imageCubeArray nearness;
+uniform bool keepNearness;
+
 /// CubeMapping.h's cubeFaces.
 vec3 cubeDirection(int face, vec2 texel) {
     vec2 st = texel * (2.0 / float(faceSize)) - 1.0;
@@ -66,9 +70,13 @@ void main() {
     if (all(greaterThanEqual(texel, job.overlayBox.xy)) && all(lessThan(texel, job.overlayBox.zw))) {
         ivec2 at = texel - job.overlayBox.xy;
         vec4 object = overlays[job.overlay + uint(at.y * (job.overlayBox.z - job.overlayBox.x) + at.x)];
-        if (object.w < depth) colour = object.rgb;
+        if (object.w < depth) {
+            colour = object.rgb;
+            depth = object.w;
+        }
     }
     imageStore(level0, ivec3(texel, job.layer), uvec4(packTexel(colour)));
+    if (keepNearness) imageStore(nearness, ivec3(texel, job.layer), vec4(depth < infinity ? 1.0 / depth : 0.0));
     vec3 mean = storeHalves(colour, ivec2(8 * gl_WorkGroupID.xy), 8, job.layer);
     if (gl_LocalInvocationIndex == 0u) {
         uint groups = gl_NumWorkGroups.x;

@@ -7,8 +7,28 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 diffuse;
 layout(location = 3) in vec3 coat;
 #ifdef REFLECTIVE
-layout(location = 4) flat in float mapLayer;
+layout(location = 4) flat in vec4 map;  // centre of the local map, relative to the eye; w: its cube
 layout(binding = 2) uniform samplerCubeArray localMap;
+#endif
+#ifdef PARALLAX
+layout(binding = 4) uniform samplerCubeArray nearness;  // 1 / distance along the cube's directions
+
+/// 1 / distance, in units of the direction's length, of what the map's centre sees there.
+float nearnessAlong(vec3 direction) {
+    vec3 a = abs(direction);
+    return max(max(a.x, a.y), a.z) * textureLod(nearness, vec4(direction, map.w), 0.0).r;
+}
+
+/// 1 / distance of what a ray meets that starts off the map's centre, 0 for the sky: the root w of
+/// nearnessAlong(towards + w * from) = w, since the centre sees from + towards / w there. On a plane nearness is
+/// linear in the direction, and the secant through w = 0 and what the direction alone says ends at the root. More
+/// lookups were measured to gain nothing: what is left is hidden from the centre.
+float nearnessOfHit(vec3 from, vec3 towards) {
+    float first = nearnessAlong(towards);
+    float second = nearnessAlong(towards + first * from);
+    // The quotient is 1 far away and near 2 where the centre sees past the ray's plane.
+    return first / max(2.0 - second / max(first, 1e-6), 0.25);
+}
 #endif
 #ifdef SCREEN
 layout(binding = 3) uniform sampler2D screenLight;  // what this pixel mirrors
@@ -27,10 +47,18 @@ void main() {
 #elif defined REFLECTIVE
     // The level whose texels are as wide as what the pixel reflects: derivatives of the reflected direction, not of face coordinates, which
     // jump at edges. A face of n texels spans two units.
+    vec3 direction = reflected;
+#ifdef PARALLAX
+    vec3 from = relative - map.xyz;
+    float near = nearnessOfHit(from, reflected);
+    direction += near * from;
+    vec3 across = max(abs(dFdx(reflected) + near * dFdx(from)), abs(dFdy(reflected) + near * dFdy(from)));
+#else
     vec3 across = max(abs(dFdx(reflected)), abs(dFdy(reflected)));
+#endif
     float wide = max(max(across.x, across.y), across.z) * 0.5 * float(textureSize(localMap, 0).x);
     float level = max(log2(max(wide, 1e-4)), coat.x > 0.3 && coat.x < 0.5 ? 2.0 : 0.0);  // rims are brushed
-    vec3 mirrored = textureLod(localMap, vec4(reflected, mapLayer), level).rgb;
+    vec3 mirrored = textureLod(localMap, vec4(direction, map.w), level).rgb;
 #else
     // No map: the sky's mean above, the ground's below.
     float up = clamp(reflected.z * 2.0 + 0.5, 0.0, 1.0);

@@ -25,14 +25,14 @@ layout(location = 3) in vec4 relativeFromVehicle0;  // rows
 layout(location = 4) in vec4 relativeFromVehicle1;
 layout(location = 5) in vec4 relativeFromVehicle2;
 layout(location = 6) in vec4 paint;                 // rgb; w: 1 braking
-layout(location = 7) in float mapLayer;
+layout(location = 7) in vec4 map;                   // centre of the local map, relative; w: its cube
 
 layout(location = 0) out vec3 relativeOut;
 layout(location = 1) out vec3 normalOut;
 layout(location = 2) out vec3 diffuseOut;   // outgoing radiance of the layer under the coat
 layout(location = 3) out vec3 coatOut;      // F0; 1: a surface with a polished coat; sun
 #ifdef REFLECTIVE
-layout(location = 4) flat out float mapLayerOut;
+layout(location = 4) flat out vec4 mapOut;
 #endif
 
 void main() {
@@ -58,6 +58,6 @@ void main() {
     diffuseOut = albedo * light * inversePi + emission;
     coatOut = vec3(s.w, s.w >= 0.03 ? 1.0 : 0.0, sun);
 #ifdef REFLECTIVE
-    mapLayerOut = mapLayer;
+    mapOut = map;
 #endif
 }

@@ -255,7 +255,7 @@ std::uint64_t LocalMapPass::Impl::makeInput(const GridTracer& tracer,
 void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, const LocalMapAtlas& atlas) {
     /// Faces of one size, neighbours in the job buffer.
     struct Run {
-        GLuint array;
+        GLuint array, nearness;
         int faceSize;
         std::size_t firstJob, jobCount, firstMean;
     };
@@ -265,7 +265,8 @@ void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, con
         const auto sizeClass = static_cast<std::size_t>(batch[i]->slot.sizeClass);
         const int faceSize = localMapFaceSizes[sizeClass];
         if (i == 0 || batch[i - 1]->slot.sizeClass != batch[i]->slot.sizeClass)
-            runs.push_back({atlas.wordArray(batch[i]->slot.sizeClass), faceSize, 6 * i, 0, meanCount});
+            runs.push_back({atlas.wordArray(batch[i]->slot.sizeClass),
+                            atlas.nearnessArray(batch[i]->slot.sizeClass), faceSize, 6 * i, 0, meanCount});
         runs.back().jobCount += 6;
         meanCount += 6 * texelsOf(faceSize / groupSize);
     }
@@ -302,7 +303,13 @@ void LocalMapPass::Impl::dispatch(std::span<const LocalMapJob* const> batch, con
         ++dispatches;
     };
     fine.use();
-    for (const Run& r : runs) run(fine, r, 0, r.faceSize / groupSize);
+    for (const Run& r : runs) {
+        fine.set("keepNearness", static_cast<int>(r.nearness != 0));
+        // Not looked at where nothing is to be kept, but what is bound must be fit for it.
+        if (r.nearness != 0)
+            glBindImageTexture(levelsAtOnce, r.nearness, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R16F);
+        run(fine, r, 0, r.faceSize / groupSize);
+    }
     if (std::ranges::any_of(runs, [](const Run& r) { return r.faceSize > groupSize; })) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         coarse.use();

@@ -48,6 +48,23 @@ void PackTexels(const float* red, const float* green, const float* blue, std::ui
     for (; i < count; ++i) pack(hn::CappedTag<float, 1>(), i);
 }
 
+/// 1 / depth as half floats, rounded to nearest: 0 for infinity, NaN and what is farther than 16 km, where
+/// halves lose their accuracy; the greatest half for what is nearer than that.
+void PackNearness(const float* depth, std::uint16_t* out, std::size_t count) {
+    const auto pack = [&](auto d, std::size_t i) {
+        const hn::Rebind<std::uint16_t, decltype(d)> dh;
+        const auto nearness = hn::Div(hn::Set(d, 1.0f), hn::LoadU(d, depth + i));
+        hn::StoreU(
+            hn::DemoteTo(dh, hn::BitCast(hn::RebindToSigned<decltype(d)>(), toSmallFloat<10>(d, nearness))),
+            dh, out + i);
+    };
+    const hn::ScalableTag<float> d;
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) pack(d, i);
+    for (; i < count; ++i) pack(hn::CappedTag<float, 1>(), i);
+}
+
 /// 2x2 box filter of one plane of a face.
 void Halve(const float* from, float* to, std::size_t half) {
     const hn::ScalableTag<float> d;
@@ -76,6 +93,7 @@ HWY_AFTER_NAMESPACE();
 namespace reflection {
 
 HWY_EXPORT(PackTexels);
+HWY_EXPORT(PackNearness);
 HWY_EXPORT(Halve);
 
 int PackedMips::levelCount() const {
@@ -96,12 +114,15 @@ std::size_t PackedMips::levelOffset(int level) const {
 void PackedMips::resize(int size) {
     faceSize = size;
     texels.resize(levelOffset(levelCount()));
+    nearness.resize(levelOffset(1));
 }
 
 void packFaceMips(const LocalMap& map, int face, PackedMips& out) {
     const std::size_t first = map.faceOffset(face);
     const float* planes[3] = {map.red.data() + first, map.green.data() + first, map.blue.data() + first};
     std::vector<float> previous[3], current[3];
+    const auto texelsOfFace = static_cast<std::size_t>(map.faceSize) * static_cast<std::size_t>(map.faceSize);
+    HWY_DYNAMIC_DISPATCH(PackNearness)(map.depth.data() + first, out.nearness.data() + first, texelsOfFace);
     for (int level = 0; level < out.levelCount(); ++level) {
         const auto side = static_cast<std::size_t>(map.faceSize >> level);
         if (level > 0) {
@@ -122,6 +143,10 @@ void packFaceMips(const LocalMap& map, int face, PackedMips& out) {
 void packMips(const LocalMap& map, PackedMips& out) {
     out.resize(map.faceSize);
     for (int face = 0; face < 6; ++face) packFaceMips(map, face, out);
+}
+
+float unpackNearness(std::uint16_t half) {
+    return half == 0 ? 0.0f : std::bit_cast<float>((std::uint32_t{half} << 13) + (112u << 23));
 }
 
 void unpackTexel(std::uint32_t texel, float& red, float& green, float& blue) {

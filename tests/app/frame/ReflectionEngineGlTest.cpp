@@ -125,6 +125,32 @@ TEST_F(ReflectionEngineGlTest, bothWaysShowTheSameStreetAndTheSameNeighbours) {
     }
 }
 
+TEST_F(ReflectionEngineGlTest, mapsComeWithTheirCentresAndDistancesWhereParallaxIsWanted) {
+    for (const MapsOn where : {MapsOn::cpu, MapsOn::gpu}) {
+        const auto made = engine(where);
+        const ReflectionPlan plan = made->update(scene_, seen_, drawer_);
+        const reflection::LocalMapTextures with = made->textures();
+        for (const MapJob& job : plan.jobs) {
+            const auto c = static_cast<std::size_t>(job.slot.sizeClass);
+            ASSERT_NE(with.nearnessArrays[c], 0u);
+            EXPECT_EQ(with.centres[c][static_cast<std::size_t>(job.slot.layer)], job.centre);
+            // Below, the road is as far as the map's centre is high.
+            const reflection::PackedMips mips = made->mapIn(job.slot);
+            const auto n = static_cast<std::size_t>(mips.faceSize);
+            const float below = reflection::unpackNearness(mips.nearness[5 * n * n + n / 2 * n + n / 2]);
+            EXPECT_NEAR(static_cast<double>(below) * job.centre.z, 1, 0.05);
+        }
+        ReflectionSettings settings = made->settings();
+        settings.parallax = false;
+        made->configure(settings);
+        for (const std::uint32_t name : made->textures().nearnessArrays) EXPECT_EQ(name, 0u);
+        settings.parallax = true;
+        settings.method = ReflectionMethod::blend;
+        made->configure(settings);
+        for (const std::uint32_t name : made->textures().nearnessArrays) EXPECT_EQ(name, 0u);
+    }
+}
+
 TEST_F(ReflectionEngineGlTest, whereMapsAreIsAsAskedAndIsTold) {
     const auto cpu = engine(MapsOn::cpu), gpu = engine(MapsOn::gpu), automatic = engine(MapsOn::automatic);
     for (const auto* e : {&cpu, &gpu, &automatic}) (*e)->update(scene_, seen_, drawer_);

@@ -81,6 +81,34 @@ void expectSound(const ReflectionPlan& plan, const FrameScene& scene, std::span<
     EXPECT_EQ(texels, plan.texels);
 }
 
+TEST(ReflectionPlanTest, ownMotionCountsByItsShareAndNeighboursInFull) {
+    // One vehicle that drives alone, 200 pixels across: half a pixel of shift after 0.5 * pi * 8 / 200 =
+    // 0.063 m.
+    const auto metresUntilRebuilt = [](float share, bool neighbourDrives) {
+        FrameScene scene;
+        scene.vehicles.resize(2);
+        scene.vehicles[1].id = 1;
+        scene.vehicles[1].position = {0, 2, 0};
+        const std::vector<SeenVehicle> seen{{0, 200}};
+        ReflectionPlanner planner;
+        PlanOptions options;
+        options.ownMotion = share;
+        for (int step = 0; step < 1000; ++step) {
+            const ReflectionPlan plan = planner.plan(scene, seen, heights, options);
+            if (step > 0 && !plan.jobs.empty()) return 0.001 * step;
+            scene.time += 0.01;
+            scene.vehicles[neighbourDrives ? 1 : 0].position.x += 0.001;
+            scene.vehicles[neighbourDrives ? 1 : 0].speed = 0.1;
+        }
+        return 1.0;
+    };
+    EXPECT_NEAR(metresUntilRebuilt(1, false), 0.063, 0.002);
+    EXPECT_NEAR(metresUntilRebuilt(0.25f, false), 0.252, 0.003);
+    EXPECT_EQ(metresUntilRebuilt(0, false), 1);
+    EXPECT_EQ(metresUntilRebuilt(0.25f, true), metresUntilRebuilt(1, true));
+    EXPECT_LT(metresUntilRebuilt(0, true), 0.1);
+}
+
 TEST(ReflectionPlanTest, nothingSeenNothingPlanned) {
     Street street(1);
     street.fill(10);

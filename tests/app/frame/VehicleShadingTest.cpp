@@ -10,9 +10,7 @@
 #include <regex>
 #include <string>
 
-#include "reflection/reference_maps/CubeMapping.h"
 #include "tests/reflection/tracing/SeededRandom.h"
-#include "vehicles/models/Fleet.h"
 
 namespace app {
 namespace {
@@ -141,85 +139,6 @@ TEST(VehicleShadingTest, vehicleFrameIsForwardLeftUp) {
     EXPECT_NEAR(m[0].z, std::sin(0.2), 1e-6) << "nose up";
     EXPECT_NEAR(std::atan2(m[0].y, m[0].x), 1.1, 1e-6);
     EXPECT_GT(m[2].z, 0.9f);
-}
-
-TEST(VehicleShadingTest, shadesTheCoarsestLevelAroundTheCentre) {
-    vehicles::VehicleModel model;
-    model.levels.resize(2);
-    city::Vertex v;
-    v.position = {1, 0, 0};
-    v.normal = {1, 0, 0};
-    v.material = static_cast<std::uint32_t>(Surface::trim);
-    model.levels[0].body.addTriangle(v, v, v);
-    model.levels[0].body.addTriangle(v, v, v);
-    city::Vertex w = v;
-    w.position = {0, 1, 0};
-    city::Vertex u = v;
-    u.position = {0, 0, 1};
-    model.levels[1].body.addTriangle(v, w, u);
-    vehicles::VehiclePose pose;
-    pose.position = {1e6, 2e6, 3};
-    pose.heading = std::acos(-1.0) / 2;
-    reflection::MovingObject object;
-    object.indices = {9, 9, 9};
-    shadeForLocalMap(model, pose, Lighting{}, {1e6 - 5, 2e6, 3}, object);
-    ASSERT_EQ(object.indices, (std::vector<std::uint32_t>{0, 1, 2}));
-    ASSERT_EQ(object.positions.size(), 3u);
-    ASSERT_EQ(object.radiance.size(), 3u);
-    EXPECT_NEAR(glm::distance(object.positions[0], glm::vec3(5, 1, 0)), 0, 1e-5);
-    EXPECT_NEAR(glm::distance(object.positions[1], glm::vec3(4, 0, 0)), 0, 1e-5);
-    EXPECT_NEAR(glm::distance(object.positions[2], glm::vec3(5, 0, 1)), 0, 1e-5);
-    const glm::vec3 expected =
-        vehicleRadiance(Lighting{}, Surface::trim, pose, {0, 1, 0}, glm::normalize(-object.positions[0]));
-    EXPECT_NEAR(glm::distance(object.radiance[0], expected), 0, 1e-5);
-    shadeForLocalMap({}, pose, Lighting{}, {0, 0, 0}, object);
-    EXPECT_TRUE(object.indices.empty() && object.positions.empty() && object.radiance.empty());
-}
-
-TEST(VehicleShadingTest, builtInVehiclesShowTheirNearSideInALocalMap) {
-    SeededRandom random(32);
-    for (const vehicles::VehicleModel& model : vehicles::builtInFleet())
-        for (int k = 0; k < 3; ++k) {
-            vehicles::VehiclePose pose;
-            const double angle = random.between(0, 6.2831853);
-            const double away = 3 + 0.5 * static_cast<double>(model.length);
-            pose.position = {away * std::cos(angle), away * std::sin(angle), -0.9};
-            pose.heading = random.between(0, 6.2831853);
-            reflection::MovingObject object;
-            shadeForLocalMap(model, pose, Lighting{}, {0, 0, 0}, object);
-            const int n = 24;
-            reflection::LocalMap map;
-            map.resize(n);
-            std::fill(map.depth.begin(), map.depth.end(), 1000.0f);
-            int drawn = 0, nearSide = 0;
-            for (int face = 0; face < 6; ++face) {
-                (void)reflection::drawMovingObjects(std::span(&object, 1), face, map);
-                for (int i = 0; i < n * n; ++i) {
-                    const float got = map.depth[map.faceOffset(face) + static_cast<std::size_t>(i)];
-                    if (got == 1000.0f) continue;
-                    // The nearest triangle that the ray meets, from whichever side.
-                    const glm::vec3 d = reflection::cubeDirection(face, glm::vec2(i % n, i / n) + 0.5f, n);
-                    float nearest = 1000;
-                    for (std::size_t t = 0; t < object.indices.size(); t += 3) {
-                        const glm::vec3 a = object.positions[object.indices[t]],
-                                        u = object.positions[object.indices[t + 1]] - a,
-                                        v = object.positions[object.indices[t + 2]] - a,
-                                        across = glm::cross(d, v);
-                        const float facing = glm::dot(u, across);
-                        if (std::abs(facing) < 1e-9f) continue;
-                        const float b = -glm::dot(a, across) / facing;
-                        const glm::vec3 q = glm::cross(-a, u);
-                        const float c = glm::dot(d, q) / facing, at = glm::dot(v, q) / facing;
-                        if (b >= 0 && c >= 0 && b + c <= 1 && at > 0.05f) nearest = std::min(nearest, at);
-                    }
-                    ++drawn;
-                    nearSide += got < nearest * 1.001f ? 1 : 0;
-                }
-            }
-            EXPECT_GT(drawn, 20) << model.name;
-            // Thin parts may be seen from behind here and there.
-            EXPECT_GT(nearSide, 0.95 * drawn) << model.name;
-        }
 }
 
 }  // namespace

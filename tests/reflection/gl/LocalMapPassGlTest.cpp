@@ -59,8 +59,9 @@ void writeFaces(const std::string& name, const std::vector<glm::vec3>& colours, 
 }
 
 struct Difference {
-    double psnr = 0;    ///< dB, of radiance with peak 2, over all faces of level 0
-    double beyond = 0;  ///< share of level 0's texels that differ by more than `tolerance` of the brighter
+    double psnr = 0;       ///< dB, of radiance with peak 2, over all faces of level 0
+    double beyond = 0;     ///< share of level 0's texels that differ by more than `tolerance` of the brighter
+    double elsewhere = 0;  ///< share of level 0's texels whose distances differ by more than a hundredth
     double beyondCoarse = 0;  ///< the same for the other levels together
 };
 
@@ -89,6 +90,12 @@ Difference compare(const PackedMips& actual, const PackedMips& expected, double 
             result.beyondCoarse += static_cast<double>(beyond);
         }
     }
+    std::size_t elsewhere = 0;
+    for (std::size_t i = 0; i < expected.nearness.size(); ++i) {
+        const float a = unpackNearness(actual.nearness[i]), b = unpackNearness(expected.nearness[i]);
+        elsewhere += std::abs(a - b) > 0.01f * std::max(a, b) ? 1 : 0;
+    }
+    result.elsewhere = static_cast<double>(elsewhere) / static_cast<double>(expected.nearness.size());
     if (coarse > 0) result.beyondCoarse /= static_cast<double>(coarse);
     return result;
 }
@@ -99,6 +106,7 @@ class LocalMapPassGlTest : public testing::Test {
 
   protected:
     LocalMapPassGlTest() {
+        atlas_.keepNearness();
         for (const glm::dvec3& p : {glm::dvec3(0, 2, 2.5), glm::dvec3(2, -9, 2.5), glm::dvec3(-2, 14, 2.5)})
             maps_.push_back(mapOf(streetScene, p, 256));
     }
@@ -154,6 +162,7 @@ class LocalMapPassGlTest : public testing::Test {
         const Difference d = compare(actual, expected, tolerance);
         EXPECT_GE(d.psnr, least) << name;
         EXPECT_LE(d.beyond, share) << name;
+        EXPECT_LE(d.elsewhere, share) << name;
         EXPECT_LE(d.beyondCoarse, 2 * share) << name;
         if (testing::Test::HasFailure()) {
             const std::vector<glm::vec3> a = unpacked(actual, 0), b = unpacked(expected, 0);

@@ -17,6 +17,7 @@ LocalMap randomMap(int n, std::uint64_t seed) {
     map.resize(n);
     for (auto* plane : {&map.red, &map.green, &map.blue})
         for (float& x : *plane) x = static_cast<float>(std::exp2(random.between(-6, 8)));
+    for (float& x : map.depth) x = static_cast<float>(std::exp2(random.between(-4, 12)));
     return map;
 }
 
@@ -106,6 +107,29 @@ TEST(PackedMipsTest, clampsWhatDoesNotFit) {
     }
 }
 
+TEST(PackedMipsTest, nearnessIsOneOverDepthToHalfAStepAndZeroForTheSky) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    for (const int n : {1, 7, 32}) {
+        LocalMap map = randomMap(n, 5);
+        SeededRandom random(3);
+        for (float& d : map.depth) d = static_cast<float>(std::exp2(random.between(-15, 13.9)));
+        map.depth[0] = infinity;
+        map.depth[1] = nan;
+        map.depth[2] = 20000;
+        map.depth[3] = 0;
+        PackedMips mips;
+        packMips(map, mips);
+        ASSERT_EQ(mips.nearness.size(), map.depth.size());
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(mips.nearness[i], 0) << i;
+        EXPECT_EQ(unpackNearness(mips.nearness[3]), 65504.0f);
+        // Half a step of 10 mantissa bits where the mantissa is 1, and the quotient's rounding.
+        for (std::size_t i = 4; i < map.depth.size(); ++i)
+            ASSERT_NEAR(unpackNearness(mips.nearness[i]) * map.depth[i], 1, 1.0 / 2048 + 1e-6)
+                << map.depth[i];
+    }
+}
+
 TEST(PackedMipsTest, isTheSameOnEveryInstructionSet) {
     const std::int64_t all = hwy::SupportedTargets();
     for (const int n : {1, 7, 16, 32}) {
@@ -119,6 +143,7 @@ TEST(PackedMipsTest, isTheSameOnEveryInstructionSet) {
             hwy::GetChosenTarget().Update(hwy::SupportedTargets());
             packMips(map, mips);
             EXPECT_EQ(mips.texels.size(), best.texels.size());
+            EXPECT_EQ(mips.nearness, best.nearness) << hwy::TargetName(target);
             // Sums of four are taken in another order by the remainder's loop: the last bit of a mean may
             // round to another code.
             std::size_t differ = 0;
