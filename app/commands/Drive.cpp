@@ -20,11 +20,13 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       gpuMapBytes_(options.gpuMapBytes()),
       resolution_(options.resolution),
       rendererName_(std::move(renderer)),
-      settings_{options.method, options.mem,      options.quality, options.cars.front(),
-                options.hour,   options.budgetMs, options.error,   options.fixedQuality},
+      settings_{options.method,  options.mem,         options.quality,   options.cars.front(),
+                options.hour,    options.budgetMs,    options.error,     options.fixedQuality,
+                options.mirrors, options.mirrorDepth, options.mirrorMaps},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
-      renderer_(std::make_unique<SceneRenderer>(scene.city, scene.models, renderOptions())),
+      mirrorPlanner_(scene.glass.fronts),
       lighting_(scene.lighting) {
+    makeRenderer();
     preparation_.cell = static_cast<float>(options.cell);
     preparation_.quiet = options.quiet;
 }
@@ -33,6 +35,20 @@ bool Drive::startReflecting(const CarryOn& carryOn, const CarryOn& calibrating) 
     if (settings_.method != ReflectionMethod::none && !reflectIn(lighting_, carryOn)) return false;
     govern(calibrating);
     return true;
+}
+
+void Drive::makeRenderer() {
+    renderer_.reset();
+    renderer_ = std::make_unique<SceneRenderer>(scene_->city, scene_->models, renderOptions());
+    renderer_->setGlass(scene_->glass.fronts);
+}
+
+MirrorSettings Drive::mirrorSettings() const {
+    MirrorSettings settings;
+    settings.on = settings_.mirrors;
+    settings.depth = settings_.mirrorDepth;
+    settings.maps = settings_.mirrorMaps;
+    return settings;
 }
 
 void Drive::govern(const CarryOn& calibrating) {
@@ -168,17 +184,24 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     const Stopwatch watch;
     renderer_->prepare(frame_);
     reflections_ = {};
+    mirrorPlan_ = mirrorPlanner_.plan(std::span(&view, 1), mirrorSettings(),
+                                      [this](const auto& from, const auto* glass, const auto& box) {
+                                          return renderer_->hides(from, glass, box);
+                                      });
+    PlanarReflections planar;
+    if (settings_.mirrors) planar.plan = &mirrorPlan_;
+    stats.mirrors = mirrorPlan_.counters;
     if (settings_.method != ReflectionMethod::none && engine_) {
         const Stopwatch reflecting;
         std::vector<SeenVehicle> seen;
-        for (const auto& visible : renderer_->visibleVehicles(view))
+        for (const auto& visible : renderer_->visibleVehicles(view, planar))
             seen.push_back({visible.index, visible.diameterPixels});
         const ReflectionPlan& plan = engine_->update(frame_, seen, *renderer_);
         reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
         stats.reflectionMs = reflecting.elapsed();
         stats.reflections = engine_->counters();
     }
-    renderer_->drawView(view, reflections_, framebuffer);
+    renderer_->drawView(view, reflections_, framebuffer, planar);
     finishDrawing();
     stats.frameMs = watch.elapsed();
     stats.drawn = renderer_->counters();
@@ -196,8 +219,7 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const Ca
     settings_ = wanted;
     if (wanted.cars != old.cars) traffic_ = startTraffic(*scene_, seed_, wanted.cars);
     if (wanted.quality != old.quality) {
-        renderer_.reset();
-        renderer_ = std::make_unique<SceneRenderer>(scene_->city, scene_->models, renderOptions());
+        makeRenderer();
         ladder_.reset();
     }
     const bool relit = wanted.hour != old.hour;

@@ -10,6 +10,7 @@
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/DriveSettings.h"
 #include "app/frame/Governor.h"
+#include "app/frame/MirrorPlan.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/raytrace/RayTracer.h"
 #include "app/render/SceneRenderer.h"
@@ -32,6 +33,7 @@ struct FrameStats {
     double reflectionMs = 0;  ///< the reflections' share: planning, building, uploading
     ReflectionCounters reflections;
     RenderCounters drawn;
+    MirrorCounters mirrors;
     Governed governed;
 };
 
@@ -70,6 +72,8 @@ class Drive {
 
   private:
     RenderOptions renderOptions() const;
+    void makeRenderer();
+    MirrorSettings mirrorSettings() const;
     ReflectionSettings reflectionSettings() const;
     void lendRays();
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
@@ -87,6 +91,8 @@ class Drive {
     std::string rendererName_;
     DriveSettings settings_;
     vehicles::Traffic traffic_;
+    MirrorPlanner mirrorPlanner_;
+    MirrorPlan mirrorPlan_;  ///< of the last frame
     std::unique_ptr<SceneRenderer> renderer_;
     Lighting lighting_;
     std::unique_ptr<RayTracer> rays_;  ///< made when first needed

@@ -61,6 +61,7 @@ city::CityModel loadCityOf(const Options& options, bool tellNotes) {
 Scene loadScene(const Options& options) {
     Scene scene;
     scene.city = loadCityOf(options);
+    scene.glass = city::glassFronts(scene.city);
     scene.models = vehicles::builtInFleet();
     scene.kinds = vehicles::kindsOf(scene.models);
     if (options.car) {

@@ -5,6 +5,7 @@
 #include "app/commands/Options.h"
 #include "app/frame/Lighting.h"
 #include "city/model/CityModel.h"
+#include "city/model/GlassFronts.h"
 #include "vehicles/models/VehicleModel.h"
 #include "vehicles/traffic/Traffic.h"
 
@@ -13,6 +14,7 @@ namespace app {
 /// The city and the vehicles that may drive in it.
 struct Scene {
     city::CityModel city;
+    city::GlassFronts glass;  ///< the city's windows that mirror
     std::vector<vehicles::VehicleModel> models;
     std::vector<vehicles::VehicleKind> kinds;  ///< kinds[i] speaks of models[i]
     Lighting lighting;

@@ -170,6 +170,25 @@ void addBudget(CLI::App& parser, Options& o, unsigned groups) {
         "by the calibration alone");
 }
 
+void addMirrors(CLI::App& parser, Options& o) {
+    parser
+        .add_option_function<std::string>(
+            "--mirrors", [&o](const std::string& text) { o.mirrors = text == "on"; },
+            "windows of shops and curtain walls mirror the street and each other: on (default) or off")
+        ->type_name("on|off")
+        ->check(CLI::IsMember({"on", "off"}));
+    parser.add_option("--mirror-depth", o.mirrorDepth, "mirrors in a row, 0 to 8")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(wholeBetween(0, 8));
+    parser
+        .add_option("--mirror-maps", o.mirrorMaps,
+                    "reflections drawn a frame at most, 0 to 1000, the least visible left out")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(wholeBetween(0, 1000));
+}
+
 /// What the command line said and `Options` has no place for.
 struct Spellings {
     std::optional<std::string> city;        ///< CITY
@@ -295,6 +314,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->capture_default_str()
             ->check(wholeBetween(1, 16));
     }
+    if (groups & mirrorOptions) addMirrors(parser, o);
     if (groups & exportOptions) {
         parser.add_option("--city", o.exportCity, "write the city to this file")
             ->type_name("FILE.glb")

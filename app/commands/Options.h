@@ -47,8 +47,11 @@ struct Options {
     bool offscreen = false;
     std::optional<CameraMode> camera;  ///< nothing: shots of both kinds in turn
     std::uint32_t stills = 6;
-    std::uint32_t samples = 64;  ///< mirror rays a pixel
-    std::uint32_t bounces = 3;   ///< mirrors in a row
+    bool mirrors = true;           ///< windows mirror
+    int mirrorDepth = 2;           ///< mirrors in a row
+    std::uint32_t mirrorMaps = 8;  ///< reflections a frame at most
+    std::uint32_t samples = 64;    ///< mirror rays a pixel
+    std::uint32_t bounces = 3;     ///< mirrors in a row
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
     std::uint64_t rays = 4'000'000;  ///< of `stability`
@@ -83,8 +86,9 @@ enum OptionGroup : unsigned {
     rayOptions = 1u << 18,        ///< --samples --bounces
     shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
 
-    budgetOption = 1u << 20,  ///< --budget
-    errorOptions = 1u << 21,  ///< --error --fixed-quality
+    mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps
+    budgetOption = 1u << 20,   ///< --budget
+    errorOptions = 1u << 21,   ///< --error --fixed-quality
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

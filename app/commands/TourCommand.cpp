@@ -9,7 +9,8 @@ Command tourCommand() {
     return {.name = "tour",
             .summary = "traffic drives, the camera tours: in a window, or as stills and a video in --out",
             .groups = cityOptions | trafficOptions | reflectionOptions | budgetOption | errorOptions |
-                      pictureOptions | outOptions | jsonOptions | durationOptions | displayOptions,
+                      mirrorOptions | pictureOptions | outOptions | jsonOptions | durationOptions |
+                      displayOptions,
             .benches = {},
             .run = [](const Options& options) {
                 return options.offscreen || !Window::possible() ? runOffscreenTour(options)

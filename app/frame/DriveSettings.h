@@ -13,9 +13,12 @@ struct DriveSettings {
     Quality quality = Quality::medium;
     std::uint32_t cars = 60;
     double hour = 15;
-    double budgetMs = 0;        ///< time of a frame that is to be held (method mem, ours); 0: none
-    double error = 0;           ///< mean FLIP on mirrors that is to be met as cheaply as may be; 0: none
-    bool fixedQuality = false;  ///< budget or error choose a detail once, as calibrated, and it stays
+    double budgetMs = 0;           ///< time of a frame that is to be held (method mem, ours); 0: none
+    double error = 0;              ///< mean FLIP on mirrors that is to be met as cheaply as may be; 0: none
+    bool fixedQuality = false;     ///< budget or error choose a detail once, as calibrated, and it stays
+    bool mirrors = true;           ///< the city's windows mirror
+    int mirrorDepth = 2;           ///< mirrors in a row
+    std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most
 
     /// Whether details follow from a budget or an error instead of `quality`.
     bool governed() const {

@@ -27,6 +27,8 @@ class CityPass {
     Counts draw(const PassView& view, PassTarget target, float tolerance);
 
     const CityGeometry& geometry() const { return geometry_; }
+    /// Patterns to texture unit 0, table to uniform buffer 1.
+    void bindMaterials() const { materials_.bind(); }
 
   private:
     struct Batch {

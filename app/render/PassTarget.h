@@ -10,6 +10,7 @@
 
 #include "app/render/Frustum.h"
 #include "app/render/Skyline.h"
+#include "reflection/planar/Portal.h"
 
 namespace app {
 
@@ -34,10 +35,16 @@ struct PassView {
     float pixelsPerRadian = 700;  ///< near the middle of the image; of parallel views: pixels per metre
     bool parallel = false;
     const SkylineView* skyline = nullptr;  ///< what hides behind buildings; null: nothing is left out
+    /// Of a view through a mirror: what is seen through its polygon, relative to the eye; null: the frustum
+    /// alone tells.
+    const reflection::HalfSpaces* portal = nullptr;
 
     /// Whether something (world) needs drawing: it may be seen.
     bool sees(const city::Aabb& box) const {
         if (!frustum.touches(box.centre() - glm::vec3(eye), 0.5f * box.size())) return false;
+        if (portal != nullptr &&
+            !reflection::touches(*portal, glm::dvec3(box.centre()) - eye, glm::dvec3(0.5f * box.size())))
+            return false;
         return skyline == nullptr || !skyline->hides(box);
     }
 

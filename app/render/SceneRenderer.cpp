@@ -13,11 +13,13 @@
 #include "app/render/CubeDestination.h"
 #include "app/render/CubeFaces.h"
 #include "app/render/FrameUniforms.h"
+#include "app/render/GlassPass.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/SignalLamps.h"
 #include "app/render/VehiclePass.h"
 #include "app/render/VehicleShadows.h"
 #include "app/render/ViewTarget.h"
+#include "reflection/gl/MirrorPass.h"
 #include "reflection/gl/Texture.h"
 
 namespace app {
@@ -35,6 +37,9 @@ constexpr float cubeNear = 0.05f;
 constexpr float cubeVehicleTolerance = 2.5f;
 /// Pixels for plants: where a leaf sits does not show, only how dense and how wide they are.
 constexpr float foliageTolerance = 10;
+/// Metres beyond which panes without a map are as they are painted: mean light is what they mirror either
+/// way.
+constexpr float glassReach = 300;
 
 float pixelsPerRadian(const View& view) {
     return 0.5f * static_cast<float>(view.size.y) * std::abs(view.clipFromView[1][1]);
@@ -63,9 +68,34 @@ void setDrawState() {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
+void setDrawState(const reflection::MirrorTarget& target) {
+    setDrawState();
+    const glm::ivec2 part = target.scissor.size();
+    glScissor(target.scissor.low.x, target.scissor.low.y, part.x, part.y);
+    glEnable(GL_SCISSOR_TEST);
+    glFrontFace(target.mirrored ? GL_CW : GL_CCW);
+}
+
+glm::mat4 clipFromRelative(const glm::dmat4& clipFromView, const glm::dmat3& viewFromWorld) {
+    return glm::mat4(clipFromView * glm::dmat4(viewFromWorld));
+}
+
+/// The eye behind the glass, as far as the glass lets it see.
+PassView passOf(const reflection::ReflectionNode& node, float share) {
+    PassView pass(node.view.eye, clipFromRelative(node.obliqueClipFromView, node.view.viewFromWorld),
+                  share * 0.5f * static_cast<float>(node.resolution.y) *
+                      std::abs(static_cast<float>(node.clipFromView[1][1])));
+    if (!node.frustum.empty()) pass.portal = &node.frustum;
+    return pass;
+}
+
 }  // namespace
 
 struct SceneRenderer::Impl {
+    /// Draws reflections as the mirror pass asks for them.
+    class Mirrors;
+    friend class Mirrors;
+
     Impl(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
          const RenderOptions& renderOptions)
         : options(renderOptions),
@@ -103,6 +133,10 @@ struct SceneRenderer::Impl {
         });
     }
 
+    /// The city's glass in a view whose city and vehicles are drawn.
+    void drawGlass(const PassView& pass, const VehicleReflections& reflections,
+                   const PlanarReflections& planar);
+
     void drawSky(const PassView& view, PassTarget target) {
         gl::Program& program = skyPrograms[static_cast<std::size_t>(target)];
         program.set("relativeFromClip", glm::inverse(view.clipFromRelative));
@@ -122,6 +156,33 @@ struct SceneRenderer::Impl {
             lastSkyline.emplace(skyline, view.eye, viewBeams, SkylineView::sectorOf(view.clipFromRelative));
         }
         return &*lastSkyline;
+    }
+
+    /// The same for an eye that may look through a mirror, for all of this frame's.
+    const SkylineView* skylineFor(const reflection::EyeView& from, const reflection::HalfSpace* glass) const {
+        if (!options.occlusionCulling) return nullptr;
+        for (const auto& [eye, view] : mirrorSkylines)
+            if (eye == from.eye) return view.get();
+        // A front's image may be seen in all of the whole image.
+        const auto sector = SkylineView::sectorOf(clipFromRelative(from.clipFromView, from.viewFromWorld));
+        auto made = std::make_unique<SkylineView>(skyline, from.eye, viewBeams, sector,
+                                                  glass != nullptr ? *glass : glm::dvec4(0));
+        return mirrorSkylines.emplace_back(from.eye, std::move(made)).second.get();
+    }
+
+    /// Which fronts the images below one show, by front.
+    const std::vector<bool>& frontsBelow(const MirrorPlan& plan, std::uint32_t root,
+                                         const reflection::ReflectionNode* parent) {
+        mapped.assign(glassPass ? glassPass->size() : 0, false);
+        for (const reflection::ReflectionNode& node : plan.tree.nodes) {
+            const bool child = parent != nullptr ? node.parent != reflection::ReflectionNode::none &&
+                                                       &plan.tree.nodes[node.parent] == parent
+                                                 : node.parent == reflection::ReflectionNode::none;
+            if (!child || node.root != root) continue;
+            for (const std::uint32_t m : plan.tree.mirrorsOf(node))
+                if (plan.fronts[m] < mapped.size()) mapped[plan.fronts[m]] = true;
+        }
+        return mapped;
     }
 
     std::vector<VisibleVehicle> visible(const PassView& pass) const {
@@ -154,6 +215,13 @@ struct SceneRenderer::Impl {
 
     ViewTarget viewTarget;
 
+    std::unique_ptr<GlassPass> glassPass;
+    std::unique_ptr<reflection::MirrorPass> mirrorPass;  ///< while plans need it
+    mutable std::vector<std::pair<glm::dvec3, std::unique_ptr<SkylineView>>>
+        mirrorSkylines;  ///< of this frame
+    std::vector<bool> mapped;
+    std::vector<std::uint32_t> fronts;
+
     CubeDestination cube;
 
     Lighting lighting;
@@ -163,6 +231,93 @@ struct SceneRenderer::Impl {
     RenderCounters counters;
     DrawingDetail detail;
 };
+
+class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
+  public:
+    Mirrors(Impl& impl, const MirrorPlan& plan, std::uint32_t root, const PassView& view,
+            const VehicleReflections& reflections)
+        : my_(impl), plan_(plan), root_(root), view_(view), reflections_(reflections) {}
+
+    void drawNode(const reflection::ReflectionTree&, const reflection::ReflectionNode& node,
+                  const reflection::MirrorTarget& target) override {
+        setDrawState(target);
+        // Each level of detail less doubles what may be off.
+        const float share = std::ldexp(1.f, -static_cast<int>(node.coarser));
+        PassView pass = passOf(node, share);
+        pass.skyline = my_.skylineFor(node.view, &node.glass);
+        my_.setFrame(pass);
+        my_.chosen.clear();
+        for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
+        const VehiclePass::Counts vehicles = my_.vehiclePass.draw(
+            pass, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
+            static_cast<float>(my_.detail.vehicleTolerance));
+        const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
+        my_.glassPass->seenBy(pass, glassReach, my_.frontsBelow(plan_, root_, &node), my_.fronts);
+        const GlassPass::Counts glass = my_.glassPass->draw(PassTarget::cube, my_.fronts, nullptr);
+        my_.signalLamps.draw(pass, PassTarget::cube, my_.signalColours);
+        if (my_.options.shadows)
+            my_.vehicleShadows.draw(pass, my_.vehiclePass.geometry(), my_.poses, my_.chosen, 8,
+                                    PassTarget::cube);
+        // The near plane that leans does not bear being turned round: the sky has none.
+        my_.drawSky(PassView(node.view.eye, clipFromRelative(node.clipFromView, node.view.viewFromWorld), 1),
+                    PassTarget::cube);
+        triangles += vehicles.triangles + city.triangles + glass.triangles;
+    }
+
+    void applyNode(const reflection::ReflectionTree&, const reflection::ReflectionNode& node,
+                   const reflection::MirrorMap& map, const reflection::ReflectionNode* parent,
+                   const reflection::MirrorTarget& target) override {
+        setDrawState(target);
+        const PassView pass = parent != nullptr ? passOf(*parent, 1) : view_;
+        my_.setFrame(pass);
+        my_.cityPass.bindMaterials();
+        my_.fronts.clear();
+        for (const std::uint32_t m : plan_.tree.mirrorsOf(node)) my_.fronts.push_back(plan_.fronts[m]);
+        my_.glassPass->draw(parent != nullptr ? PassTarget::cube : PassTarget::view, my_.fronts, &map);
+    }
+
+    std::uint64_t triangles = 0;
+
+  private:
+    Impl& my_;
+    const MirrorPlan& plan_;
+    std::uint32_t root_;
+    const PassView& view_;
+    const VehicleReflections& reflections_;
+};
+
+void SceneRenderer::Impl::drawGlass(const PassView& pass, const VehicleReflections& reflections,
+                                    const PlanarReflections& planar) {
+    if (!glassPass || planar.plan == nullptr) {
+        mirrorPass.reset();
+        return;
+    }
+    glassPass->seenBy(pass, glassReach, frontsBelow(*planar.plan, planar.root, nullptr), fronts);
+    const GlassPass::Counts plain = glassPass->draw(PassTarget::view, fronts, nullptr);
+    counters.drawCalls += plain.drawCalls;
+    counters.triangles += plain.triangles;
+    if (planar.plan->empty()) {
+        mirrorPass.reset();
+        return;
+    }
+    if (!mirrorPass) mirrorPass = std::make_unique<reflection::MirrorPass>();
+    mirrorPass->trim(planar.plan->tree);
+    mirrorPass->resetCounters();
+    Mirrors mirrors(*this, *planar.plan, planar.root, pass, reflections);
+    reflection::MirrorTarget target;
+    target.framebuffer = viewTarget.framebuffer();
+    target.viewport = target.scissor = {glm::ivec2(0), viewTarget.drawn()};
+    mirrorPass->drawReflections(planar.plan->tree, planar.root, mirrors, target);
+    const reflection::MirrorPassCounters& made = mirrorPass->counters();
+    counters.mirrorPasses = static_cast<std::uint32_t>(made.images);
+    counters.mirrorTriangles = mirrors.triangles;
+    counters.mirrorTextureBytes = made.mapBytes + made.depthBytes + made.blurBytes;
+    setDrawState();
+    setFrame(pass);
+    // Whom the view itself shows: the mirrors chose others.
+    chosen.clear();
+    for (const VisibleVehicle& v : visible(pass)) chosen.push_back(v.index);
+}
 
 SceneRenderer::SceneRenderer(const city::CityModel& city, std::span<const vehicles::VehicleModel> models,
                              const RenderOptions& options)
@@ -176,6 +331,17 @@ void SceneRenderer::prepare(const FrameScene& scene) {
     impl_->lighting.sunDirection = length > 0 ? scene.lighting.sunDirection / length : glm::vec3(0, 0, 1);
     impl_->poses = scene.vehicles;
     impl_->signalColours = scene.signalColours;
+    impl_->mirrorSkylines.clear();
+}
+
+void SceneRenderer::setGlass(std::span<const city::GlassFront> fronts) {
+    impl_->glassPass = fronts.empty() ? nullptr : std::make_unique<GlassPass>(fronts);
+}
+
+bool SceneRenderer::hides(const reflection::EyeView& from, const reflection::HalfSpace* glass,
+                          const city::Aabb& box) const {
+    const SkylineView* skyline = impl_->skylineFor(from, glass);
+    return skyline != nullptr && skyline->hides(box);
 }
 
 void SceneRenderer::setDetail(const DrawingDetail& detail) {
@@ -183,7 +349,7 @@ void SceneRenderer::setDetail(const DrawingDetail& detail) {
 }
 
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
-                             std::uint32_t framebuffer) {
+                             std::uint32_t framebuffer, const PlanarReflections& planar) {
     Impl& my = *impl_;
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
@@ -203,14 +369,15 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
                             static_cast<float>(my.detail.vehicleTolerance));
     const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
     const std::uint32_t lampCalls = my.signalLamps.draw(pass, PassTarget::view, my.signalColours);
+    my.drawGlass(pass, reflections, planar);
     const std::uint32_t shadowCalls =
         my.options.shadows ? my.vehicleShadows.draw(pass, my.vehiclePass.geometry(), my.poses, my.chosen) : 0;
     my.drawSky(pass, PassTarget::view);
 
     my.viewTarget.finish(framebuffer, my.detail.antialiasing);
 
-    my.counters.drawCalls = vehicles.drawCalls + city.drawCalls + lampCalls + shadowCalls + 1;
-    my.counters.triangles = vehicles.triangles + city.triangles;
+    my.counters.drawCalls += vehicles.drawCalls + city.drawCalls + lampCalls + shadowCalls + 1;
+    my.counters.triangles += vehicles.triangles + city.triangles;
     my.counters.chunksDrawn = city.chunksDrawn;
     my.counters.chunksCulled = city.chunksCulled;
     my.counters.vehiclesDrawn = vehicles.vehicles;
@@ -261,6 +428,31 @@ std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(const 
     PassView pass(view.eye, view.clipFromView * view.viewFromWorld, pixelsPerRadian(view));
     pass.skyline = my.skylineFor(pass);
     return my.visible(pass);
+}
+
+std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(
+    const View& view, const PlanarReflections& planar) const {
+    const Impl& my = *impl_;
+    std::vector<VisibleVehicle> found = visibleVehicles(view);
+    if (planar.plan == nullptr || !my.glassPass) return found;
+    constexpr std::uint32_t unseen = 0xffffffffu;
+    std::vector<std::uint32_t> place(my.poses.size(), unseen);
+    for (std::uint32_t i = 0; i < found.size(); ++i) place[found[i].index] = i;
+    for (const reflection::ReflectionNode& node : planar.plan->tree.nodes) {
+        if (node.root != planar.root) continue;
+        PassView pass = passOf(node, 0.5f);
+        pass.skyline = my.skylineFor(node.view, &node.glass);
+        for (const VisibleVehicle& v : my.visible(pass)) {
+            if (place[v.index] == unseen) {
+                place[v.index] = static_cast<std::uint32_t>(found.size());
+                found.push_back(v);
+            } else {
+                float& most = found[place[v.index]].diameterPixels;
+                most = std::max(most, v.diameterPixels);
+            }
+        }
+    }
+    return found;
 }
 
 }  // namespace app

@@ -7,8 +7,10 @@
 
 #include "app/frame/Detail.h"
 #include "app/frame/FrameScene.h"
+#include "app/frame/MirrorPlan.h"
 #include "app/frame/SunMap.h"
 #include "city/model/CityModel.h"
+#include "city/model/GlassFronts.h"
 #include "reflection/gl/LocalMapTextures.h"
 #include "reflection/gl/SceneDrawer.h"
 #include "vehicles/models/VehicleModel.h"
@@ -29,6 +31,9 @@ struct RenderCounters {
     std::uint32_t chunksDrawn = 0;
     std::uint32_t chunksCulled = 0;
     std::uint32_t vehiclesDrawn = 0;
+    std::uint32_t mirrorPasses = 0;        ///< reflections drawn for windows
+    std::uint64_t mirrorTriangles = 0;     ///< in them
+    std::uint64_t mirrorTextureBytes = 0;  ///< colour and depth of their maps, held now
 };
 
 /// How the vehicles of a frame reflect.
@@ -38,6 +43,12 @@ struct VehicleReflections {
     /// GL name of a ScreenLight's texture for this view: what each pixel mirrors, in place of all maps. 0:
     /// none.
     std::uint32_t mirrored = 0;
+};
+
+/// What the city's windows mirror in a view.
+struct PlanarReflections {
+    const MirrorPlan* plan = nullptr;  ///< null: glass is as it is painted on the walls
+    std::uint32_t root = 0;            ///< of the plan's tree: this view
 };
 
 /// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models;
@@ -54,9 +65,20 @@ class SceneRenderer final : public reflection::SceneDrawer {
     /// Of all views from now on. Costs nothing to change.
     void setDetail(const DrawingDetail& detail);
 
+    /// The city's glass, to which the indices of mirror plans refer; empty: none. Without it plans are
+    /// ignored.
+    void setGlass(std::span<const city::GlassFront> fronts);
+
     /// Draws one of the prepared scene's views, tone mapped, into a framebuffer (0: the window), sRGB-encoded
-    /// 8 bit.
-    void drawView(const View& view, const VehicleReflections& reflections, std::uint32_t framebuffer);
+    /// 8 bit. With a mirror plan: the reflections it lists first, each into its level's map, and glass
+    /// without a map by mean light. Textures for maps are kept while plans use them.
+    void drawView(const View& view, const VehicleReflections& reflections, std::uint32_t framebuffer,
+                  const PlanarReflections& planar = {});
+
+    /// Whether a box is surely hidden by buildings from an eye that may look through a mirror: what
+    /// MirrorPlanner asks. Answers for the eyes of one frame are kept until `prepare`.
+    bool hides(const reflection::EyeView& from, const reflection::HalfSpace* glass,
+               const city::Aabb& box) const;
 
     void drawCube(const glm::dvec3& centre, const reflection::CubeTarget& target,
                   const reflection::CubeContent& content) override;
@@ -74,6 +96,9 @@ class SceneRenderer final : public reflection::SceneDrawer {
         float diameterPixels;
     };
     std::vector<VisibleVehicle> visibleVehicles(const View& view) const;
+    /// The same with the vehicles that are seen in the plan's mirrors, at half their size there: they too
+    /// mirror the street, and what shows them is dim.
+    std::vector<VisibleVehicle> visibleVehicles(const View& view, const PlanarReflections& planar) const;
 
   private:
     struct Impl;

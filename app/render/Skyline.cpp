@@ -16,6 +16,9 @@ namespace {
 constexpr float none = -std::numeric_limits<float>::infinity();
 /// A building's foot may stand this much above the ground: doorsteps, slopes within a cell.
 constexpr float footTolerance = 0.3f;
+/// z of the unit normal of a mirror that still counts as upright: beams are level, and over the longest of
+/// them the glass then moves by less than the margin.
+constexpr double uprightMirror = 1e-3;
 
 /// Point samples of surfaces seen from above.
 class SampleGrid {
@@ -185,9 +188,12 @@ Skyline::Skyline(const city::CityModel& city) {
     for (float h : heights_) highest_ = std::max(highest_, h);
 }
 
-SkylineView::SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beams, const Sector& sector)
+SkylineView::SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beams, const Sector& sector,
+                         const glm::dvec4& glass)
     : eye_(eye), beams_(beams), beamWidth_(2 * std::numbers::pi_v<float> / static_cast<float>(beams)) {
-    if (skyline.empty() || skyline.heightAt(glm::vec2(eye_)) >= eye_.z) return;
+    const bool mirrored = glm::dvec3(glass) != glm::dvec3(0);
+    if (skyline.empty() || (mirrored && std::abs(glass.z) > uprightMirror)) return;
+    if (!mirrored && skyline.heightAt(glm::vec2(eye_)) >= eye_.z) return;
     nothingHidden_ = false;
     // Half of the margin is for eaves, half for the width of the beam; beams that grow wider prove nothing.
     const float farthest = Skyline::margin / beamWidth_;
@@ -205,7 +211,19 @@ SkylineView::SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beam
         const float azimuth = (static_cast<float>(beam) + 0.5f) * beamWidth_;
         const glm::vec2 direction(std::cos(azimuth), std::sin(azimuth));
         float steepest = none;
-        for (float distance = stride; distance < farthest; distance += stride) {
+        float first = stride;
+        if (mirrored) {
+            // All of the beam must have passed the glass, and what is solid there must be clear of it.
+            const float edge = 0.5f * beamWidth_;
+            for (const float side : {-edge, edge}) {
+                const double approach =
+                    glass.x * std::cos(double(azimuth + side)) + glass.y * std::sin(double(azimuth + side));
+                first = approach > 1e-3
+                            ? std::max(first, static_cast<float>(-glass.w / approach) + Skyline::margin)
+                            : farthest;
+            }
+        }
+        for (float distance = first; distance < farthest; distance += stride) {
             const float height = skyline.heightAt(glm::vec2(eye_) + distance * direction);
             if (height == none) continue;
             const float slope = (height - eye_.z) / distance;

@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 #include <vector>
 
@@ -55,7 +56,12 @@ class SkylineView {
     };
     /// `beams` in the full circle; only those that cross the sector are walked, and what lies outside it
     /// counts as hidden.
-    SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beams, const Sector& sector);
+    SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beams, const Sector& sector)
+        : SkylineView(skyline, eye, beams, sector, glm::dvec4(0)) {}
+    /// The same for an eye behind an upright mirror that sees through it (dot(xyz, p - eye) + w >= 0 in
+    /// front): what stands behind the mirror hides nothing. A mirror that leans hides nothing at all.
+    SkylineView(const Skyline& skyline, const glm::dvec3& eye, int beams, const Sector& sector,
+                const glm::dvec4& glass);
 
     /// The azimuths that a view sees; the full circle when it sees straight up or down.
     static Sector sectorOf(const glm::mat4& clipFromRelative);

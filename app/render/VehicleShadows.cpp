@@ -9,7 +9,8 @@ namespace app {
 namespace gl = reflection::gl;
 
 VehicleShadows::VehicleShadows()
-    : program_(gl::Program::fromFiles({"vehicle_shadow.vert", "vehicle_shadow.frag"})),
+    : programs_{gl::Program::fromFiles({"vehicle_shadow.vert", "vehicle_shadow.frag"}),
+                gl::Program::fromFiles({"vehicle_shadow.vert", "vehicle_shadow.frag"}, {"LINEAR"})},
       buffer_(gl::Buffer::create()),
       array_(gl::VertexArray::create()) {
     array_.buffer(0, buffer_.name(), sizeof(Instance), 1)
@@ -19,7 +20,7 @@ VehicleShadows::VehicleShadows()
 
 std::uint32_t VehicleShadows::draw(const PassView& view, const VehicleGeometry& geometry,
                                    std::span<const vehicles::VehiclePose> poses,
-                                   std::span<const std::uint32_t> chosen, float smallest) {
+                                   std::span<const std::uint32_t> chosen, float smallest, PassTarget target) {
     instances_.clear();
     for (std::uint32_t index : chosen) {
         const vehicles::VehiclePose& pose = poses[index];
@@ -39,9 +40,12 @@ std::uint32_t VehicleShadows::draw(const PassView& view, const VehicleGeometry& 
     glBlendFunc(GL_DST_COLOR, GL_ZERO);
     glDepthMask(GL_FALSE);
     glDisable(GL_CULL_FACE);
-    program_.use();
+    const bool linear = target == PassTarget::cube;
+    programs_[linear ? 1 : 0].use();
+    if (linear) glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);  // distances stay
     array_.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(instances_.size()));
+    if (linear) glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     return 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <glm/vec4.hpp>
 #include <span>
 #include <vector>
@@ -21,16 +22,17 @@ class VehicleShadows {
     VehicleShadows();
     /// After the city and the vehicles, before the sky. Vehicles below `smallest` pixels are left out.
     /// Returns the number of draw calls.
+    /// `target`: display values, or (cube) linear radiance.
     std::uint32_t draw(const PassView& view, const VehicleGeometry& geometry,
                        std::span<const vehicles::VehiclePose> poses, std::span<const std::uint32_t> chosen,
-                       float smallest = 8);
+                       float smallest = 8, PassTarget target = PassTarget::view);
 
   private:
     struct Instance {
         glm::vec4 place;
         glm::vec4 outline;
     };
-    reflection::gl::Program program_;
+    std::array<reflection::gl::Program, 2> programs_;  ///< [target]
     reflection::gl::Buffer buffer_;
     reflection::gl::VertexArray array_;
     std::vector<Instance> instances_;

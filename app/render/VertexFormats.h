@@ -28,6 +28,17 @@ struct CityVertex {
 };
 static_assert(sizeof(CityVertex) == 28);
 
+/// A vertex of a pane of glass: 28 bytes.
+struct GlassVertex {
+    glm::vec3 position;    ///< world metres
+    glm::vec2 texcoord;    ///< repeats of the pattern of what is seen behind
+    std::uint32_t normal;  ///< see packNormal
+    std::uint16_t material;
+    std::uint8_t reflectance;    ///< at normal incidence, 255 = all
+    std::uint8_t transmittance;  ///< the same
+};
+static_assert(sizeof(GlassVertex) == 28);
+
 /// A vertex of a vehicle: 20 bytes.
 struct VehicleVertex {
     glm::vec3 position;  ///< vehicle frame, metres

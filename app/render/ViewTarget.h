@@ -22,6 +22,8 @@ class ViewTarget {
     void begin(glm::ivec2 size, double scale = 1);
     /// Pixels drawn since the last `begin`.
     glm::ivec2 drawn() const { return drawn_; }
+    /// GL name of the framebuffer that is drawn into between `begin` and `finish`.
+    std::uint32_t framebuffer() const { return target_.name(); }
     /// Antialiases into the caller's framebuffer, stretched to the view's size; it is current afterwards.
     /// `antialiasing`: see DrawingDetail.
     void finish(std::uint32_t framebuffer, double antialiasing = 1);

@@ -1,5 +1,5 @@
 #version 450 core
-// How much of its light the ground keeps beside a vehicle, as a factor on display colours.
+// How much of its light the ground keeps beside a vehicle, as a factor on display colours or (LINEAR) on radiance.
 #include "frame.glsl"
 layout(binding = 1) uniform sampler2DShadow sunShadow;
 layout(location = 0) in vec2 position;
@@ -34,5 +34,9 @@ void main() {
     vec3 direct = frame.sunIrradiance.rgb * max(frame.sunDirection.z, 0.0) * sun;
     vec3 before = frame.skyIrradiance.rgb + direct;
     vec3 after = frame.skyIrradiance.rgb * open + direct * (1.0 - shade) * min(1.0, 0.4 + open);
+#ifdef LINEAR
+    factorOut = vec4(after / before, 1.0);
+#else
     factorOut = vec4(sqrt(after / before), 1.0);  // display values are about square roots of radiance
+#endif
 }

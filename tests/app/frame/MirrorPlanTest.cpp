@@ -1,0 +1,172 @@
+#include "app/frame/MirrorPlan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace {
+
+using app::MirrorPlan;
+using app::MirrorPlanner;
+using app::MirrorSettings;
+
+/// A front 8 m wide and 2.6 m high with its left lower corner at `foot`, seen from its right-hand side.
+city::GlassFront front(const glm::dvec3& foot, const glm::dvec3& along, float reflectance = 0.08f) {
+    city::GlassFront f;
+    f.normal = {along.y, -along.x, 0};
+    f.outline = {foot, foot + 8.0 * along, foot + 8.0 * along + glm::dvec3(0, 0, 2.6),
+                 foot + glm::dvec3(0, 0, 2.6)};
+    for (const glm::dvec3& p : f.outline) f.bounds.extend(glm::vec3(p));
+    f.paneCount = 8;
+    f.area = 16;
+    f.glass.reflectance = reflectance;
+    return f;
+}
+
+constexpr glm::dvec3 east(1, 0, 0), west(-1, 0, 0);
+
+/// A street of 14 m along x: the north side's fronts look south (y = 7), the south side's north (y = -7).
+std::vector<city::GlassFront> street(int shopsASide) {
+    std::vector<city::GlassFront> fronts;
+    for (int i = 0; i < shopsASide; ++i) {
+        fronts.push_back(front({10.0 * i, 7, 0.5}, east));
+        fronts.push_back(front({10.0 * i + 8, -7, 0.5}, west));
+    }
+    return fronts;
+}
+
+app::View viewFrom(const glm::dvec3& eye, const glm::dvec3& target) {
+    return app::lookAt(eye, target, 1.05, {1280, 720});
+}
+
+MirrorPlan planOf(const std::vector<city::GlassFront>& fronts, const app::View& view,
+                  const MirrorSettings& settings = {}) {
+    return MirrorPlanner(fronts).plan(std::span(&view, 1), settings);
+}
+
+TEST(MirrorPlan, CoplanarFrontsShareOneReflection) {
+    // Down the street, one plane a side.
+    const auto fronts = street(5);
+    MirrorSettings settings;
+    settings.depth = 1;
+    const MirrorPlan plan = planOf(fronts, viewFrom({-10, 0, 2}, {40, 0, 2}), settings);
+    EXPECT_EQ(plan.counters.inCity, 10u);
+    EXPECT_EQ(plan.counters.passes, 2u);
+    EXPECT_EQ(plan.counters.levels, 1u);
+    EXPECT_GE(plan.counters.shown, 6u);
+    EXPECT_EQ(plan.counters.windows, 8 * plan.counters.shown);
+    EXPECT_EQ(plan.counters.shared, plan.counters.shown - 2);
+    for (const auto& node : plan.tree.nodes) EXPECT_TRUE(node.view.mirrored());
+}
+
+TEST(MirrorPlan, FacingFrontsAreMetAgainAtEveryDepth) {
+    const auto fronts = street(3);
+    const app::View view = viewFrom({5, -2, 2}, {5, 7, 1.8});
+    for (int depth = 1; depth <= 3; ++depth) {
+        MirrorSettings settings;
+        settings.depth = depth;
+        settings.economies.cutOff = false;
+        settings.maps = 100;
+        const MirrorPlan plan = planOf(fronts, view, settings);
+        // One plane each time: north, south in north, north in that.
+        EXPECT_EQ(plan.counters.passes, static_cast<std::uint32_t>(depth));
+        EXPECT_EQ(plan.counters.levels, static_cast<std::uint32_t>(depth));
+        // The front behind the camera is known to mirrors alone.
+        EXPECT_LE(plan.counters.inView, 3u);
+    }
+}
+
+TEST(MirrorPlan, NothingInViewCostsNothing) {
+    const auto fronts = street(3);
+    const app::View away = viewFrom({-20, 0, 2}, {-60, 0, 2});
+    const MirrorPlan plan = planOf(fronts, away);
+    EXPECT_TRUE(plan.empty());
+    EXPECT_EQ(plan.counters.passes, 0u);
+    EXPECT_EQ(plan.counters.texels, 0u);
+    EXPECT_EQ(plan.tree.levelSize.size(), 0u);
+    EXPECT_TRUE(planOf({}, away).empty());
+}
+
+TEST(MirrorPlan, SwitchedOffNothingIsPlanned) {
+    const auto fronts = street(3);
+    const app::View view = viewFrom({5, -2, 2}, {5, 7, 1.8});
+    ASSERT_FALSE(planOf(fronts, view).empty());
+    MirrorSettings off;
+    off.on = false;
+    EXPECT_TRUE(planOf(fronts, view, off).empty());
+    off = {};
+    off.depth = 0;
+    EXPECT_TRUE(planOf(fronts, view, off).empty());
+    off = {};
+    off.maps = 0;
+    EXPECT_TRUE(planOf(fronts, view, off).empty());
+}
+
+TEST(MirrorPlan, ExtremesOfTheEyeGiveNothingOrSomethingSound) {
+    const std::vector<city::GlassFront> one{front({0, 7, 0.5}, east)};
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    // Behind, in the plane beside the pane, edge on, far, nowhere.
+    EXPECT_TRUE(planOf(one, viewFrom({4, 12, 2}, {4, 7, 2})).empty());
+    EXPECT_TRUE(planOf(one, viewFrom({-5, 7, 2}, {4, 7, 2})).empty());
+    EXPECT_TRUE(planOf(one, viewFrom({4, 7, 1}, {4, 20, 2})).empty());
+    EXPECT_TRUE(planOf(one, viewFrom({-5, 7 - 1e-6, 2}, {4, 7, 2})).empty());
+    EXPECT_TRUE(planOf(one, viewFrom({4, -900, 2}, {4, 7, 2})).empty());
+    EXPECT_TRUE(planOf(one, viewFrom({nan, 0, 2}, {4, 7, 2})).empty());
+    // Nearer than the near plane the glass is not drawn.
+    EXPECT_TRUE(planOf(one, viewFrom({4, 7 - 1e-3, 2}, {4, 7, 2})).empty());
+    // A little before the glass: one reflection, everything in it finite.
+    const MirrorPlan close = planOf(one, viewFrom({4, 7 - 0.11, 2}, {4, 7, 2}));
+    ASSERT_EQ(close.counters.passes, 1u);
+    const auto& node = close.tree.nodes[0];
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) EXPECT_TRUE(std::isfinite(node.obliqueClipFromView[c][r]));
+}
+
+TEST(MirrorPlan, CapLeavesOutTheLeastVisible) {
+    // Two planes: a large near front, a small far one.
+    const std::vector<city::GlassFront> two{front({20, 9, 0.5}, east), front({0, 7, 0.5}, east)};
+    const app::View view = viewFrom({4, 0, 2}, {9, 8, 2});
+    MirrorSettings settings;
+    ASSERT_EQ(planOf(two, view, settings).counters.passes, 2u);
+    settings.maps = 1;
+    const MirrorPlan capped = planOf(two, view, settings);
+    ASSERT_EQ(capped.counters.passes, 1u);
+    EXPECT_EQ(capped.counters.overCap, 1u);
+    EXPECT_EQ(capped.fronts[capped.tree.mirrors[0]], 1u);
+}
+
+TEST(MirrorPlan, WhatBuildingsHideIsLeftOut) {
+    const auto fronts = street(1);
+    const app::View view = viewFrom({4, -2, 2}, {4, 7, 1.8});
+    int asked = 0, throughGlass = 0;
+    const auto all = [&](const reflection::EyeView&, const reflection::HalfSpace* glass,
+                         const city::Aabb& box) {
+        ++asked;
+        throughGlass += glass != nullptr ? 1 : 0;
+        EXPECT_FALSE(box.empty());
+        return true;
+    };
+    const MirrorPlan hidden = MirrorPlanner(fronts).plan(std::span(&view, 1), {}, all);
+    EXPECT_TRUE(hidden.empty());
+    EXPECT_EQ(hidden.counters.occluded, 1u);
+    EXPECT_EQ(throughGlass, 0);
+    const auto none = [&](const reflection::EyeView&, const reflection::HalfSpace* glass, const city::Aabb&) {
+        throughGlass += glass != nullptr ? 1 : 0;
+        return false;
+    };
+    EXPECT_EQ(MirrorPlanner(fronts).plan(std::span(&view, 1), {}, none).counters.passes, 2u);
+    EXPECT_EQ(throughGlass, 1);
+}
+
+TEST(MirrorPlan, EqualInputGivesEqualPlans) {
+    const auto fronts = street(6);
+    const app::View view = viewFrom({-3, 1, 2}, {30, 4, 2});
+    const MirrorPlan a = planOf(fronts, view), b = planOf(fronts, view);
+    EXPECT_EQ(a.tree.mirrors, b.tree.mirrors);
+    EXPECT_EQ(a.fronts, b.fronts);
+    EXPECT_EQ(a.counters.texels, b.counters.texels);
+}
+
+}  // namespace

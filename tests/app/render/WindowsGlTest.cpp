@@ -1,0 +1,232 @@
+// What a window shows is what a picture of the mirrored city shows: the city with everything carried to the
+// other side of the glass, lit by a sun carried there too, drawn as any city is.
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "app/display/OffscreenContext.h"
+#include "app/display/OffscreenTarget.h"
+#include "app/render/Readback.h"
+#include "app/render/SceneRenderer.h"
+#include "reflection/gl/DebugOutput.h"
+#include "tests/app/render/BoxWorld.h"
+
+namespace app {
+namespace {
+
+namespace gl = reflection::gl;
+
+constexpr glm::ivec2 size(480, 270);
+constexpr double glassY = 9;     ///< the plane of the northern glass; it looks south
+constexpr double facingY = -11;  ///< of the southern one, which looks north
+
+/// An upright rectangle of glass along x that mirrors everything, at y, looking north or south.
+city::GlassFront pane(double x0, double x1, double y, double z0, double z1, bool north) {
+    city::GlassFront front;
+    front.normal = {0, north ? 1 : -1, 0};
+    const double left = north ? x1 : x0, right = north ? x0 : x1;
+    front.outline = {glm::dvec3(left, y, z0), {right, y, z0}, {right, y, z1}, {left, y, z1}};
+    front.glass = {1, 0};
+    front.paneCount = 1;
+    front.area = (x1 - x0) * (z1 - z0);
+    const auto corner = [&](std::size_t i) {
+        return city::Vertex{glm::vec3(front.outline[i]), glm::vec3(front.normal), {0.5f, 0.5f}, 0};
+    };
+    front.panes.addQuad(corner(0), corner(1), corner(2), corner(3));
+    front.bounds = front.panes.bounds();
+    return front;
+}
+
+city::GlassFront blackened(city::GlassFront front) {
+    front.glass = {0, 0};
+    return front;
+}
+
+/// Boxes of all colours south of the glass, and one, if asked for, north of it, which nobody may see in it.
+city::CityModel street(bool behind) {
+    city::CityModel city = test::boxCity();
+    city.chunks.resize(1);  // the ground
+    const auto add = [&](const glm::vec3& lo, const glm::vec3& hi, std::uint32_t material) {
+        city::Mesh mesh;
+        test::addBox(mesh, lo, hi, material);
+        city.chunks.push_back(test::chunkOf(city::ChunkKind::building, std::move(mesh)));
+    };
+    add({-14, -20, 0}, {-6, -12, 11}, 1);
+    add({-5, -26, 0}, {3, -12, 6}, 2);
+    add({4, -20, 0}, {15, -12, 14}, 3);
+    add({-2, 2, 0}, {0, 5, 1.5f}, 4);
+    add({6, 6, 0.5f}, {7.5f, 8.5f, 2.5f}, 1);
+    add({-40, -60, 0}, {40, -40, 25}, 4);
+    if (behind) add({-9, 10, 0}, {9, 14, 9}, 2);
+    for (const city::Chunk& chunk : city.chunks) city.bounds.extend(chunk.bounds);
+    return city;
+}
+
+city::CityModel mirrored(city::CityModel city) {
+    for (city::Chunk& chunk : city.chunks) {
+        for (city::Vertex& v : chunk.mesh.vertices) {
+            v.position.y = static_cast<float>(2 * glassY - v.position.y);
+            v.normal.y = -v.normal.y;
+        }
+        for (std::size_t i = 0; i + 2 < chunk.mesh.indices.size(); i += 3)
+            std::swap(chunk.mesh.indices[i + 1], chunk.mesh.indices[i + 2]);
+        chunk.bounds = chunk.mesh.bounds();
+    }
+    return city;
+}
+
+class WindowsGlTest : public testing::Test {
+  public:
+    ~WindowsGlTest() override { EXPECT_THAT(debug_.errors(), testing::IsEmpty()); }
+
+  protected:
+    Image8 picture(const city::CityModel& city, const std::vector<city::GlassFront>& fronts, const View& view,
+                   int depth, bool mirroredSun, bool occlusion = true) {
+        RenderOptions options;
+        options.antialiasing = Antialiasing::none;
+        options.shadows = false;
+        options.occlusionCulling = occlusion;
+        SceneRenderer renderer(city, models_, options);
+        renderer.setGlass(fronts);
+        FrameScene scene;
+        scene.lighting = lightingAt(15);
+        if (mirroredSun) scene.lighting.sunDirection.y = -scene.lighting.sunDirection.y;
+        renderer.prepare(scene);
+        MirrorSettings settings;
+        settings.depth = depth;
+        settings.levelScale = 1;
+        settings.economies.detail = false;
+        const MirrorPlan plan = MirrorPlanner(fronts).plan(
+            std::span(&view, 1), settings, [&](const auto& from, const auto* glass, const auto& box) {
+                return renderer.hides(from, glass, box);
+            });
+        passes_ = plan.counters.passes;
+        const OffscreenTarget target(size);
+        renderer.drawView(view, {}, target.framebuffer(), {&plan, 0});
+        counters_ = renderer.counters();
+        EXPECT_EQ(counters_.mirrorPasses, passes_);
+        return readPixels(target.framebuffer(), size);
+    }
+
+    /// Mean and share of outliers of the differences inside the outline's projection, shrunk by two pixels.
+    struct Difference {
+        double mean = 0, outliers = 0;
+        int pixels = 0;
+    };
+    /// `black`: the picture with black glass, which tells where something stands before it.
+    static Difference within(const Image8& a, const Image8& b, const Image8& black,
+                             const city::GlassFront& front, const View& view) {
+        glm::dvec2 low(1e9), high(-1e9);
+        const reflection::EyeView eye = eyeViewOf(view);
+        for (const glm::dvec3& p : front.outline) {
+            const glm::dvec4 clip = eye.clip(p);
+            const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+        Difference d;
+        // Rows of an image read back start at the top.
+        for (int y = std::max(0, int(low.y) + 3); y < std::min(size.y, int(high.y) - 2); ++y) {
+            for (int x = std::max(0, int(low.x) + 3); x < std::min(size.x, int(high.x) - 2); ++x) {
+                const std::size_t at = static_cast<std::size_t>(((size.y - 1 - y) * size.x + x) * 4);
+                if (black.rgba[at] > 1 || black.rgba[at + 1] > 1 || black.rgba[at + 2] > 1) continue;
+                int most = 0;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const int e = std::abs(int(a.rgba[at + c]) - int(b.rgba[at + c]));
+                    d.mean += e / 3.0;
+                    most = std::max(most, e);
+                }
+                d.outliers += most > 12 ? 1 : 0;
+                ++d.pixels;
+            }
+        }
+        d.mean /= std::max(d.pixels, 1);
+        d.outliers /= std::max(d.pixels, 1);
+        return d;
+    }
+
+    OffscreenContext context_;
+    gl::DebugOutput debug_;
+    std::vector<vehicles::VehicleModel> models_{test::boxCar()};
+    std::uint32_t passes_ = 0;
+    RenderCounters counters_;
+};
+
+TEST_F(WindowsGlTest, aWindowShowsTheMirroredCity) {
+    const city::GlassFront front = pane(-8, 9, glassY, 0.4, 5, false);
+    for (const glm::dvec3 eye : {glm::dvec3(0, -4, 1.7), glm::dvec3(-11, 3, 2.5), glm::dvec3(10, 7, 1.2)}) {
+        // Seen head on, from the side, along the glass: the view holds all of its height.
+        const View view = lookAt(eye, {0.5, glassY, 2.4}, 1.2, size);
+        const Image8 seen = picture(street(true), {front}, view, 1, false);
+        ASSERT_EQ(passes_, 1u);
+        EXPECT_GT(counters_.mirrorTriangles, 0u);
+        const Image8 truth = picture(mirrored(street(false)), {}, view, 0, true);
+        const Image8 black = picture(street(true), {blackened(front)}, view, 0, false);
+        const Difference d = within(seen, truth, black, front, view);
+        ASSERT_GT(d.pixels, 2000);
+        // 11 bit floats: 1.6% of radiance, 2 of 255 in display values; boxes' edges move by a pixel at most.
+        EXPECT_LT(d.mean, 1.5);
+        EXPECT_LT(d.outliers, 0.02);
+        if (eye.x < 0 || eye.x > 5) continue;  // the rest once
+        // The same with everything that no building hides drawn anyway.
+        const Image8 all = picture(street(true), {front}, view, 1, false, false);
+        EXPECT_EQ(all.rgba, seen.rgba);
+        // And it is no accident: without the mirror the picture is another.
+        const Image8 plain = picture(street(true), {front}, view, 0, false);
+        EXPECT_GT(within(plain, truth, black, front, view).mean, 15);
+    }
+}
+
+TEST_F(WindowsGlTest, aWindowInAWindowShowsTheCityMirroredTwice) {
+    const city::GlassFront north = pane(-8, 9, glassY, 0.4, 5, false);
+    const city::GlassFront south = pane(-4, 4, facingY, 0.4, 5.5, true);
+    const View view = lookAt({1, -3, 1.8}, {0.5, glassY, 2.4}, 1.2, size);
+    const Image8 seen = picture(street(false), {north, south}, view, 2, false);
+    EXPECT_EQ(passes_, 2u);
+    // The southern glass carried behind the northern one, where it is met first; what it shows is the
+    // mirrored city mirrored again, and in it the northern glass as every glass is at the last depth.
+    const city::GlassFront carried = pane(-4, 4, 2 * glassY - facingY, 0.4, 5.5, false);
+    const city::GlassFront back = pane(-8, 9, glassY, 0.4, 5, true);
+    const Image8 truth = picture(mirrored(street(false)), {carried, back}, view, 1, true);
+    EXPECT_EQ(passes_, 1u);
+    const Image8 black = picture(street(false), {blackened(north)}, view, 0, false);
+    const Difference d = within(seen, truth, black, north, view);
+    ASSERT_GT(d.pixels, 1000);
+    EXPECT_LT(d.mean, 1.5);
+    EXPECT_LT(d.outliers, 0.02);
+    // One mirror in a row is not enough.
+    const Image8 once = picture(street(false), {north, south}, view, 1, false);
+    EXPECT_GT(within(once, truth, black, carried, view).mean, 5);
+    EXPECT_LT(within(seen, truth, black, carried, view).mean, 1.5);
+}
+
+TEST_F(WindowsGlTest, noWindowInViewKeepsNoTexture) {
+    const city::GlassFront front = pane(-8, 9, glassY, 0.4, 5, false);
+    const city::CityModel city = street(true);
+    SceneRenderer renderer(city, models_, {});
+    const std::vector<city::GlassFront> fronts{front};
+    renderer.setGlass(fronts);
+    FrameScene scene;
+    scene.lighting = lightingAt(15);
+    const OffscreenTarget target(size);
+    const MirrorPlanner planner(fronts);
+    const auto draw = [&](const glm::dvec3& at) {
+        renderer.prepare(scene);
+        const View view = lookAt({0, -4, 1.7}, at, 1.2, size);
+        const MirrorPlan plan = planner.plan(std::span(&view, 1), {});
+        renderer.drawView(view, {}, target.framebuffer(), {&plan, 0});
+        return renderer.counters();
+    };
+    EXPECT_GT(draw({0, 9, 2}).mirrorTextureBytes, 0u);
+    const RenderCounters away = draw({0, -20, 2});
+    EXPECT_EQ(away.mirrorPasses, 0u);
+    EXPECT_EQ(away.mirrorTextureBytes, 0u);
+    EXPECT_GT(draw({0, 9, 2}).mirrorPasses, 0u);
+}
+
+}  // namespace
+}  // namespace app
