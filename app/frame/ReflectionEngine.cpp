@@ -322,19 +322,23 @@ void ReflectionEngine::Impl::gatherNeighbours(const FrameScene& scene, const Map
         return a.squared != b.squared ? a.squared < b.squared : a.index < b.index;
     });
     near.resize(std::min(near.size(), mostNeighbours));
-    for (const Near& other : near) {
+    std::erase_if(near, [&](const Near& other) {
         const vehicles::VehiclePose& pose = scene.vehicles[other.index];
-        const float height = models[pose.model].height;
-        if (tracer.occluded(glm::vec3(job.centre), glm::vec3(pose.position + glm::dvec3(0, 0, height)),
-                            models[pose.model].length))
-            continue;
-        // Two texels where the vehicle is nearest to the map's centre: half a texel costs more, and was
-        // measured to gain nothing.
-        const double nearest = std::max(std::sqrt(other.squared) - 0.5 * models[pose.model].length, 1.0);
-        const double allowed = 2 * nearest * (std::numbers::pi / 2) / faceSize;
+        const vehicles::VehicleModel& model = models[pose.model];
+        return tracer.occluded(glm::vec3(job.centre),
+                               glm::vec3(pose.position + glm::dvec3(0, 0, model.height)), model.length);
+    });
+    out.resize(near.size());
+    // A frame may have one map to build: its neighbours must not wait for one core.
+    tbb::parallel_for(std::size_t{0}, near.size(), [&](std::size_t i) {
+        const vehicles::VehiclePose& pose = scene.vehicles[near[i].index];
+        // Four texels where the vehicle is nearest to the map's centre: one costs more, and was measured to
+        // gain nothing.
+        const double nearest = std::max(std::sqrt(near[i].squared) - 0.5 * models[pose.model].length, 1.0);
+        const double allowed = 4 * nearest * (std::numbers::pi / 2) / faceSize;
         mirroredVehicles[pose.model].shade(pose, scene.lighting, job.centre, static_cast<float>(allowed),
-                                           sunOn(scene, pose), out.emplace_back());
-    }
+                                           sunOn(scene, pose), out[i]);
+    });
 }
 
 void ReflectionEngine::Impl::buildFixedMap() {
