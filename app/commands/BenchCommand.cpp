@@ -28,6 +28,12 @@ std::vector<Bench> allBenches() {
         {{"localmap", "one local map by every method, against re-rendering its six faces",
           mapOptions | mapsOnOptions},
          benchLocalMap},
+        {{"mirrors",
+          "recursive reflections in flat and curved mirrors: the paper's scenes and its table, culling, "
+          "gloss and "
+          "depth against ray tracing; or a scene FILE.json",
+          saveOption},
+         benchMirrors},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},
          benchStills},

@@ -27,5 +27,6 @@ int benchGovernor(const Options& options);
 int benchStills(const Options& options);
 int benchTracer(const Options& options);
 int benchLocalMap(const Options& options);
+int benchMirrors(const Options& options);
 
 }  // namespace app

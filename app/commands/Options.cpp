@@ -273,6 +273,10 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->type_name("DIR")
             ->check(isPath())
             ->capture_default_str();
+    if (groups & saveOption)
+        parser.add_option("--save", o.save, "folder for pictures of what was measured")
+            ->type_name("DIR")
+            ->check(isPath());
     if (groups & jsonOptions)
         parser.add_option("--json", o.json, "write the results to this file")
             ->type_name("FILE")

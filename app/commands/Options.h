@@ -54,7 +54,8 @@ struct Options {
     std::uint32_t bounces = 3;     ///< mirrors in a row
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
-    std::uint64_t rays = 4'000'000;  ///< of `stability`
+    std::uint64_t rays = 4'000'000;             ///< of `stability`
+    std::optional<std::filesystem::path> save;  ///< folder for what was measured, as pictures
 
     /// --gpu-map-memory in bytes.
     std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
@@ -89,6 +90,7 @@ enum OptionGroup : unsigned {
     mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps
     budgetOption = 1u << 20,   ///< --budget
     errorOptions = 1u << 21,   ///< --error --fixed-quality
+    saveOption = 1u << 23,     ///< --save
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

@@ -21,8 +21,9 @@ int Options::effort() const {
 }
 
 std::vector<Campaign> allCampaigns() {
-    return {{"tracer", tryTracer}, {"embree", tryEmbree},   {"maps", tryReferenceMaps}, {"mesh", tryMesh},
-            {"frames", tryFrames}, {"traffic", tryTraffic}, {"settings", trySettings}};
+    return {{"tracer", tryTracer},     {"embree", tryEmbree},  {"maps", tryReferenceMaps},
+            {"mesh", tryMesh},         {"frames", tryFrames},  {"traffic", tryTraffic},
+            {"settings", trySettings}, {"mirrors", tryMirrors}};
 }
 
 nlohmann::ordered_json toJson(const Row& row) {

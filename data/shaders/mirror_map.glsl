@@ -1,6 +1,7 @@
 // What a planar mirror shows at a fragment: MirrorMap of reflection/gl/MirrorScene.h.
 uniform vec4 uvFromFragment;  // scale xy, offset zw
 uniform vec4 uvLimits;        // low xy, high zw
+uniform vec2 blurredScale;    // from coordinates of mirrorColour to those of mirrorBlurred
 layout(binding = 8) uniform sampler2D mirrorColour;
 layout(binding = 9) uniform sampler2D mirrorBlurred;
 
@@ -21,7 +22,7 @@ vec4 mirrorSmooth(vec2 uv, float level) {
     vec2 low = w0 + w1, high = w2 + w3;
     vec2 a = (base - 0.5 + w1 / low) / size, b = (base + 1.5 + w3 / high) / size;
     // Outside the part in use lies another reflection.
-    vec2 first = 0.5 / size, last = uvLimits.zw + 0.5 / vec2(textureSize(mirrorBlurred, 0)) - first;
+    vec2 first = 0.5 / size, last = uvLimits.zw * blurredScale + 0.5 / vec2(textureSize(mirrorBlurred, 0)) - first;
     a = clamp(a, first, max(last, first));
     b = clamp(b, first, max(last, first));
     return low.y * (low.x * textureLod(mirrorBlurred, a, level) + high.x * textureLod(mirrorBlurred, vec2(b.x, a.y), level)) +
@@ -44,7 +45,10 @@ vec4 mirrorGaussian(vec2 uv, float sigma, int levels) {
 // A rough mirror. `along`, `across`: texture coordinates by which the image moves when the reflected direction turns by one standard
 // deviation within the plane of incidence, and across it, for something far behind the glass. `levels`: MirrorMap::blurLevels.
 vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels) {
-    vec2 uv = clamp(mirrorUv(fragment) + shift, uvLimits.xy, uvLimits.zw);
+    vec4 limits = uvLimits * blurredScale.xyxy;
+    vec2 uv = clamp((mirrorUv(fragment) + shift) * blurredScale, limits.xy, limits.zw);
+    along *= blurredScale;
+    across *= blurredScale;
     vec2 size = vec2(textureSize(mirrorBlurred, 0));
     float longest = length(along * size), shortest = min(length(across * size), longest);
     // How far behind the glass what is seen lies: of the neighbourhood that could be mixed in, then of that which is.
@@ -58,7 +62,7 @@ vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels)
     const float weights[4] = float[4](20.0 / 64.0, 15.0 / 64.0, 6.0 / 64.0, 1.0 / 64.0);
     vec3 sum = weights[0] * mirrorGaussian(uv, sigma, levels).rgb;
     for (int i = 1; i < 4; ++i) {
-        vec2 low = clamp(uv - float(i) * stride, uvLimits.xy, uvLimits.zw), high = clamp(uv + float(i) * stride, uvLimits.xy, uvLimits.zw);
+        vec2 low = clamp(uv - float(i) * stride, limits.xy, limits.zw), high = clamp(uv + float(i) * stride, limits.xy, limits.zw);
         sum += weights[i] * (mirrorGaussian(low, sigma, levels).rgb + mirrorGaussian(high, sigma, levels).rgb);
     }
     return sum;

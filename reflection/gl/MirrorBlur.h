@@ -21,6 +21,7 @@ class MirrorBlur {
     /// depth test and blending. Returns the number of levels.
     int blur(const MirrorLevel& map, const ReflectionNode& node, double sigma);
     const Texture& pyramid() const { return pyramid_; }
+    const glm::ivec2& size() const { return size_; }  ///< texels, of its finest level
     std::uint64_t bytes() const;
     void release();
 

@@ -63,7 +63,13 @@ struct MirrorPass::Impl {
     gl::Texture spare, spareDepth;          ///< the one being drawn
     gl::Framebuffer spareTarget;
     int faceSize = 0;
+    bool withDistance =
+        false;  ///< of the tree at hand: some mirror is rough, and way lengths add up through all
 
+    void look(const ReflectionTree& tree) {
+        withDistance = false;
+        for (const ReflectionNode& n : tree.nodes) withDistance = withDistance || rough(n);
+    }
     bool rough(const ReflectionNode& node) const {
         return options.gloss && node.planar() && node.roughness > 0 &&
                node.view.projection == Projection::perspective;
@@ -74,7 +80,7 @@ struct MirrorPass::Impl {
         gl::MirrorLevel& level = levels[node.level];
         const glm::ivec2 needed =
             node.level < tree.levelSize.size() ? tree.levelSize[node.level] : node.resolution;
-        level.require(glm::max(needed, node.resolution), glFormat(options.format), rough(node));
+        level.require(glm::max(needed, node.resolution), glFormat(options.format), withDistance);
         Image image;
         image.node = &node;
         image.crop = node.crop;
@@ -97,6 +103,7 @@ struct MirrorPass::Impl {
         MirrorMap map;
         map.colour = level.colour.name();
         map.texels = glm::vec2(level.size());
+        if (level.withDistance()) map.distance = level.distance.name();
         const glm::dvec2 pixels(glm::max(parent.target.viewport.size(), glm::ivec2(1)));
         // Fragment of the parent's target -> its whole image -> what of it the map shows -> texture.
         const glm::dvec2 part = glm::dvec2(node.resolution) / glm::dvec2(level.size());
@@ -112,6 +119,7 @@ struct MirrorPass::Impl {
                                                           node.clipFromView[1][1] * node.resolution.y);
             map.blurLevels = blur.blur(level, node, glossAngle(node.roughness) * texelsPerRadian);
             map.blurred = blur.pyramid().name();
+            map.blurredScale = glm::vec2(level.size()) / glm::vec2(blur.size());
             ++counters.filtered;
         }
         bind(parent.target);
@@ -176,6 +184,7 @@ MirrorPass& MirrorPass::operator=(MirrorPass&&) noexcept = default;
 void MirrorPass::drawEnvironments(const ReflectionTree& tree, MirrorScene& scene, std::size_t curved) {
     Impl& my = *impl_;
     const std::vector<ReflectionStep> steps = tree.environmentSteps();
+    my.look(tree);
     std::size_t at = 0;
     while (at < steps.size()) {
         const ReflectionStep& step = steps[at];
@@ -211,6 +220,7 @@ void MirrorPass::drawReflections(const ReflectionTree& tree, std::uint32_t root,
     Impl& my = *impl_;
     const std::vector<ReflectionStep> steps = tree.stepsOf(root);
     if (steps.empty()) return;
+    my.look(tree);
     Impl::Image image;
     image.target = target;
     my.run(tree, steps, 0, scene, image);

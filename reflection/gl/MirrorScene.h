@@ -24,11 +24,13 @@ struct MirrorMap {
     /// radiance, and in alpha the share of the way that lies behind the glass (see glossAngleSeen). 0: the
     /// mirrors are smooth. Sampled by `mirrorGloss` of data/shaders/mirror_map.glsl.
     std::uint32_t blurred = 0;
+    std::uint32_t distance = 0;  ///< GL_TEXTURE_2D R32F, metres from the node's eye; 0: the target wants none
     int blurLevels = 0;
     /// Of planar nodes: texture coordinates from gl_FragCoord in the parent's target, xy * scale + offset.
     glm::vec4 uvFromFragment{1, 1, 0, 0};  ///< scale xy, offset zw
     /// Texture coordinates of the middles of the map's outermost texels: clamp to them.
     glm::vec4 uvLimits{0, 0, 1, 1};  ///< low xy, high zw
+    glm::vec2 blurredScale{1};       ///< from these coordinates to those of `blurred`, which is larger
     glm::vec2 texels{1};             ///< size of the textures
     float texelsPerPixel = 1;        ///< of the map for one pixel of the parent's target
 };

@@ -261,18 +261,23 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     node.throughput = image.throughput * reflectance;
     node.roughness = static_cast<float>(roughness);
     node.bounds = seen.portal.bounds;
-    // A rough mirror's filter reaches beyond its edge, by some two standard deviations.
+    // A rough mirror's filter reaches beyond its edge, by some two standard deviations; a map whose texels are not the
+    // picture's pixels is interpolated, a texel beyond.
     NdcRect seenThrough = seen.portal.bounds;
-    if (roughness > 0 && perspective) {
+    const bool texelsArePixels = image.grid == tree_.roots[image.root].size && settings_.levelScale >= 1;
+    const bool larger = perspective && (roughness > 0 || !texelsArePixels);
+    if (larger) {
         const double reach = 2 * glossAngle(roughness);
-        const glm::dvec2 margin(reach * node.view.clipFromView[0][0], reach * node.view.clipFromView[1][1]);
+        const double texels = texelsArePixels ? 0 : 3 / std::pow(settings_.levelScale, image.level);
+        const glm::dvec2 margin = reach * glm::dvec2(node.view.clipFromView[0][0], node.view.clipFromView[1][1]) +
+                                  texels / glm::dvec2(image.grid);
         seenThrough.low = glm::max(seenThrough.low - margin, glm::dvec2(-1));
         seenThrough.high = glm::min(seenThrough.high + margin, glm::dvec2(1));
     }
     const PixelRect whole{glm::ivec2(0), image.grid};
     const PixelRect rect = pixelsOf(seenThrough, image.grid);
     if (economies.narrow && perspective) {
-        if (seen.mirrors.size() == 1 && roughness <= 0 && seen.portal.status == PortalStatus::ok) {
+        if (seen.mirrors.size() == 1 && !larger && seen.portal.status == PortalStatus::ok) {
             node.frustum = frustumThrough(seen.portal, node.view, plane);
         } else {
             node.frustum = frustumOf(node.view, seenThrough);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "app/mirrors/MirrorWorld.h"
+#include "reflection/gl/MirrorPass.h"
+
+namespace app {
+
+/// A MirrorWorld and what draws it off screen: for measurements and tests. Needs the same context in every
+/// call.
+class MirrorStage {
+  public:
+    MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::CurvedMaps curved,
+                const reflection::MirrorPassOptions& options = {});
+    ~MirrorStage();
+
+    /// One frame: tree, environment maps, the scene, its reflections. The tree stays until the next frame.
+    /// `settings.curved` is the stage's. Curved reflectors have maps from the second frame on.
+    const reflection::ReflectionTree& draw(reflection::TreeSettings settings);
+    /// The same picture without maps: see drawByStencil.
+    const reflection::ReflectionTree& drawWithStencil(reflection::TreeSettings settings);
+
+    /// Linear radiance, row 0 at the top. Waits.
+    std::vector<glm::vec3> read() const;
+    glm::ivec2 size() const;
+    /// By oblique near planes instead of clip distances.
+    void setOblique(bool oblique);
+
+    reflection::MirrorPass& pass();
+    std::uint64_t trianglesDrawn() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "app/mirrors/MirrorWorld.h"
+#include "reflection/gl/MirrorScene.h"
+
+namespace app {
+
+/// Draws a MirrorWorld with OpenGL 4.5, its reflections by a ReflectionTree and a MirrorPass. Colours are
+/// linear, as they are; the caller encodes them. Mirrors without a map (where the recursion ends, or left
+/// out) show MirrorWorld::beyond.
+class MirrorWorldRenderer final : public reflection::MirrorScene {
+  public:
+    /// `curved`: how curved reflectors mirror; paraboloids need finer triangles.
+    MirrorWorldRenderer(const MirrorWorld& world, reflection::CurvedMaps curved);
+    ~MirrorWorldRenderer() override;
+
+    /// Everything but reflections in one of the tree's roots; the target is bound, its depth cleared.
+    void drawRoot(const reflection::ReflectionTree& tree, std::uint32_t root,
+                  const reflection::MirrorTarget& target);
+
+    void drawNode(const reflection::ReflectionTree& tree, const reflection::ReflectionNode& node,
+                  const reflection::MirrorTarget& target) override;
+    void applyNode(const reflection::ReflectionTree& tree, const reflection::ReflectionNode& node,
+                   const reflection::MirrorMap& map, const reflection::ReflectionNode* parent,
+                   const reflection::MirrorTarget& target) override;
+    void drawFace(const reflection::ReflectionTree& tree, const reflection::ReflectionRoot& face,
+                  const reflection::MirrorTarget& target) override;
+    void publish(const reflection::EnvironmentJob& job, std::uint32_t texture) override;
+
+    /// Mirrors by oblique near planes in place of clip distances.
+    void setOblique(bool oblique);
+
+    /// The polygon of a mirror by itself, in one colour: for stencils. Sets no state but the program.
+    void drawMirrorShape(std::uint32_t mirror, const reflection::EyeView& view,
+                         const glm::dmat4& clipFromView, const reflection::HalfSpace& glass,
+                         const glm::vec3& colour);
+
+    std::uint64_t trianglesDrawn() const;  ///< since the beginning
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace app

@@ -1,0 +1,79 @@
+#version 450 core
+// MATTE: what the corners say. FLAT: a planar mirror with its map, ROUGH: blurred. Otherwise a curved reflector: VIEW: view-dependent map,
+// CUBE or PAIR: view-independent.
+#if defined(FLAT)
+#include "mirror_map.glsl"
+#endif
+layout(location = 0) in vec3 relative;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+layout(location = 0) out vec4 colourOut;
+layout(location = 1) out float distanceOut;
+uniform vec3 reflectance;
+uniform vec3 tint;
+#if defined(FLAT)
+uniform vec3 mirrorNormal;
+uniform mat3 viewFromRelative;  // of the image in which the mirror is met
+uniform vec2 uvPerTangent;      // texture coordinates for one unit of x / -z in view space
+uniform float glossAngle;       // radians
+uniform int blurLevels;
+layout(binding = 10) uniform sampler2D mirrorDistance;
+uniform bool addDistance;
+#elif defined(VIEW)
+layout(binding = 8) uniform sampler2D map;
+uniform mat3 mapFromRelative;  // view space of the map
+uniform float mapScale;        // ndc for one unit of x / -z
+uniform vec2 mapPart;          // of the texture in use
+#elif defined(CUBE)
+layout(binding = 8) uniform samplerCube map;
+#elif defined(PAIR)
+layout(binding = 8) uniform sampler2DArray map;
+#endif
+
+#ifdef FLAT
+// Movement over the image when a direction of view space turns towards `e`, for one radian.
+vec2 movement(vec3 v, vec3 e) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) * uvPerTangent; }
+#endif
+
+void main() {
+    distanceOut = length(relative);
+#if defined(MATTE)
+    colourOut = vec4(colour, 1.0);
+#else
+    vec3 d = normalize(relative);
+    vec3 light;
+#if defined(FLAT)
+#ifdef ROUGH
+    float facing = clamp(-dot(d, mirrorNormal), 1e-3, 1.0);
+    vec3 within = mirrorNormal + facing * d;  // in the plane of incidence, across the view direction
+    float size = length(within);
+    vec3 e1 = size > 1e-4 ? within / size : normalize(cross(d, abs(d.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
+    vec3 e2 = cross(d, e1);
+    vec3 v = viewFromRelative * d;
+    vec2 along = glossAngle * movement(v, viewFromRelative * e1);
+    vec2 across = glossAngle * facing * movement(v, viewFromRelative * e2);
+    light = mirrorGloss(gl_FragCoord.xy, vec2(0.0), along, across, blurLevels);
+#else
+    light = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
+#endif
+    if (addDistance) distanceOut = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
+#else
+    vec3 r = reflect(d, normalize(normal));
+#if defined(VIEW)
+    vec3 q = mapFromRelative * r;
+    // Directions beyond the map's field of view take its border's colour.
+    vec2 at = q.z < -1e-4 ? q.xy / -q.z * mapScale : normalize(q.xy + vec2(1e-9)) * 2.0;
+    at *= min(1.0, 1.0 / max(length(at), 1e-9));
+    light = textureLod(map, (0.5 + 0.5 * at) * mapPart, 0.0).rgb;
+#elif defined(CUBE)
+    light = textureLod(map, r, 0.0).rgb;
+#elif defined(PAIR)
+    // Halves look along +z and -z: see paraboloidView.
+    bool up = r.z >= 0.0;
+    vec3 q = up ? vec3(r.x, -r.y, -r.z) : r;
+    light = textureLod(map, vec3(0.5 + 0.5 * q.xy / (1.0 - q.z), up ? 0.0 : 1.0), 0.0).rgb;
+#endif
+#endif
+    colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, 1.0);
+#endif
+}

@@ -1,0 +1,174 @@
+// Reflections drawn by the tree against reflections drawn otherwise: stencils, rays, everything unculled.
+#include "app/render/MirrorStage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "app/display/OffscreenContext.h"
+#include "app/mirrors/LitShapes.h"
+#include "app/mirrors/MirrorTruth.h"
+#include "reflection/truth/ImageError.h"
+
+namespace app {
+namespace {
+
+using reflection::CurvedMaps;
+using reflection::Economies;
+using reflection::MirrorFormat;
+using reflection::TreeSettings;
+
+MirrorWorld paperScene(char which) {
+    return loadMirrorWorld(std::string(MIRRORSTREET_SOURCE_DIR) + "/data/scenes/paper_" + which + ".json");
+}
+
+double psnrOf(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b, glm::ivec2 size,
+              reflection::PixelMask mask = {}) {
+    return reflection::psnr({size.x, size.y, a}, {size.x, size.y, b}, mask);
+}
+
+reflection::MirrorPassOptions exact() {
+    reflection::MirrorPassOptions options;
+    options.format = MirrorFormat::rgba16f;
+    return options;
+}
+
+class MirrorStageGlTest : public ::testing::Test {
+  protected:
+    OffscreenContext context;
+    const glm::ivec2 size{320, 240};
+};
+
+TEST_F(MirrorStageGlTest, MapsShowWhatStencilsShow) {
+    const MirrorWorld world = facingWindows(0);
+    for (int depth : {1, 2, 4}) {
+        MirrorStage stage(world, size, CurvedMaps::none, exact());
+        TreeSettings settings;
+        settings.depth = depth;
+        stage.draw(settings);
+        const auto maps = stage.read();
+        stage.drawWithStencil(settings);
+        EXPECT_GT(psnrOf(maps, stage.read(), size), 50) << depth;
+    }
+}
+
+TEST_F(MirrorStageGlTest, SmoothMirrorsShowWhatRaysSee) {
+    const MirrorWorld world = facingWindows(0);
+    const MirrorTruth truth(world);
+    for (int depth : {0, 1, 3, 8}) {
+        MirrorStage stage(world, size, CurvedMaps::none, exact());
+        TreeSettings settings;
+        settings.depth = depth;
+        stage.draw(settings);
+        // Borders may fall on either side of a pixel's middle.
+        EXPECT_GT(psnrOf(stage.read(), truth.picture(world.view(size), {.depth = depth}).radiance, size), 38)
+            << depth;
+    }
+}
+
+TEST_F(MirrorStageGlTest, CullingChangesNoPixel) {
+    for (char which : {'a', 'b', 'c', 'd'}) {
+        const MirrorWorld world = paperScene(which);
+        std::vector<glm::vec3> all;
+        for (const Economies& e : {Economies::paper(), Economies{}}) {
+            MirrorStage stage(world, size, CurvedMaps::cube, exact());
+            TreeSettings settings;
+            settings.depth = world.depth;
+            settings.economies = e;
+            settings.cutOff = 0;
+            settings.mostMaps = 1000;
+            for (int frame = 0; frame < 3; ++frame) stage.draw(settings);
+            if (all.empty())
+                all = stage.read();
+            else
+                EXPECT_GT(psnrOf(stage.read(), all, size), 50) << which;
+        }
+    }
+}
+
+TEST_F(MirrorStageGlTest, ObliqueNearPlanesCutLikeClipDistances) {
+    const MirrorWorld world = paperScene('d');
+    MirrorStage stage(world, size, CurvedMaps::none, exact());
+    TreeSettings settings;
+    settings.depth = 3;
+    stage.draw(settings);
+    const auto clipped = stage.read();
+    stage.setOblique(true);
+    stage.draw(settings);
+    EXPECT_GT(psnrOf(stage.read(), clipped, size), 45);
+}
+
+// A ball that is small beside what it mirrors: there environment maps are nearly right.
+TEST_F(MirrorStageGlTest, CurvedReflectorsComeNearWhatRaysSee) {
+    MirrorWorld world;
+    for (int i = 0; i < 8; ++i) {
+        const float a = 0.785398f * static_cast<float>(i), r = 20;
+        const glm::vec3 foot(r * std::cos(a), r * std::sin(a), -8);
+        world.objects.push_back(
+            litBox(foot - glm::vec3(4, 4, 0), foot + glm::vec3(4, 4, 6 + 2 * (i % 4)),
+                   {0.2f + 0.1f * static_cast<float>(i), 0.5f, 0.9f - 0.1f * static_cast<float>(i)}));
+    }
+    MirrorWorld::Curved ball;
+    ball.reflector.radius = 0.4;
+    ball.mesh = litBall({0, 0, 0}, 0.4f, 64, 32, glm::vec3(1));
+    world.curved.push_back(ball);
+    world.eye = {-1.6, -0.4, 0.2};
+    world.target = {0, 0, 0};
+    const TracedPicture truth = MirrorTruth(world).picture(world.view(size), {.depth = 2});
+    std::map<CurvedMaps, double> got;
+    for (CurvedMaps curved :
+         {CurvedMaps::none, CurvedMaps::viewDependent, CurvedMaps::cube, CurvedMaps::dualParaboloid}) {
+        MirrorStage stage(world, size, curved, exact());
+        TreeSettings settings;
+        settings.faceSize = 512;
+        stage.draw(settings);
+        got[curved] = psnrOf(stage.read(), truth.radiance, size, truth.curved);
+    }
+    EXPECT_LT(got[CurvedMaps::none], 16);
+    EXPECT_GT(got[CurvedMaps::viewDependent], 18);
+    EXPECT_GT(got[CurvedMaps::cube], 24);
+    EXPECT_GT(got[CurvedMaps::dualParaboloid], 24);
+}
+
+TEST_F(MirrorStageGlTest, RoughMirrorsComeNearTheTruthAtEveryDepth) {
+    const MirrorWorld world = facingWindows(0.15f);
+    const MirrorTruth truth(world);
+    MirrorStage stage(world, size, CurvedMaps::none, exact());
+    for (int depth : {1, 3}) {
+        TreeSettings settings;
+        settings.depth = depth;
+        stage.draw(settings);
+        const TracedPicture t = truth.picture(world.view(size), {.depth = depth, .samples = 128});
+        EXPECT_GT(psnrOf(stage.read(), t.radiance, size, t.level), depth == 1 ? 35 : 30) << depth;
+    }
+}
+
+TEST_F(MirrorStageGlTest, MemoryGrowsWithDepthAloneAndGoesWhenNothingMirrors) {
+    MirrorWorld world = facingWindows(0);
+    MirrorStage stage(world, size, CurvedMaps::none);
+    std::uint64_t before = 0;
+    TreeSettings settings;
+    settings.economies.resolution = false;
+    for (int depth = 1; depth <= 8; ++depth) {
+        settings.depth = depth;
+        const auto& tree = stage.draw(settings);
+        const std::uint64_t bytes = stage.pass().counters().mapBytes;
+        EXPECT_EQ(bytes, static_cast<std::uint64_t>(depth) * 320 * 256 * 4);
+        EXPECT_GT(bytes, before);
+        EXPECT_GE(tree.planarBytes(), bytes - static_cast<std::uint64_t>(depth) * 320 * 16 * 4);
+        before = bytes;
+    }
+    settings.depth = 0;
+    const auto& none = stage.draw(settings);
+    EXPECT_TRUE(none.empty());
+    stage.pass().resetCounters();
+    stage.draw(settings);
+    stage.pass().trim(none);
+    EXPECT_EQ(stage.pass().counters().images, 0u);
+    EXPECT_EQ(stage.pass().counters().mapBytes, 0u);
+}
+
+}  // namespace
+}  // namespace app
