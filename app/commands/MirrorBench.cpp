@@ -56,7 +56,10 @@ Timing timed(MirrorStage& stage, const TreeSettings& settings, int frames) {
 }
 
 std::string both(double ours, double theirs, int decimals) {
-    return fixed(ours, decimals) + " / " + (theirs < 0 ? "-" : fixed(theirs, decimals));
+    // Halves up, as the paper rounds.
+    const double unit = decimals == 0 ? 1 : 10;
+    return fixed(std::floor(ours * unit + 0.5) / unit, decimals) + " / " +
+           (theirs < 0 ? "-" : fixed(theirs, decimals));
 }
 
 double psnrOf(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b, const glm::ivec2& size,
@@ -112,10 +115,11 @@ MirrorRows tableOne(const MirrorWorld& world, const PaperRow* paper, const Mirro
             reflection::paperMemory(settings, world.mirrors.size(), world.curved.size());
         const bool dependent = v.curved == CurvedMaps::viewDependent, cube = v.curved == CurvedMaps::cube;
         const bool known = paper != nullptr && (dependent || cube);
-        const double theirs = !known      ? -1
-                              : dependent ? paper->viewDependent
-                              : v.refresh ? paper->dynamicPlanar
-                                          : paper->staticPlanar;
+        double theirs = -1;
+        if (known)
+            theirs = dependent   ? paper->viewDependent
+                     : v.refresh ? paper->dynamicPlanar
+                                 : paper->staticPlanar;
         const double used = !known ? -1 : dependent ? paper->usedDependent : paper->usedIndependent;
         const double traditional = !known      ? -1
                                    : dependent ? paper->traditionalDependent
@@ -180,6 +184,7 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         std::string name;
         Economies economies;
         CurvedMaps curved;
+        glm::ivec2 mapSize;
     };
     const CurvedMaps first = world.curved.empty() ? CurvedMaps::none : CurvedMaps::viewDependent;
     std::vector<std::vector<Case>> groups;
@@ -190,17 +195,27 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         groups.push_back(
             {{"cubes, all", Economies::paper(), CurvedMaps::cube}, {"cubes, culled", all, CurvedMaps::cube}});
     if (eachEconomy) {
+        Economies more = all;
+        more.resolution = true;
+        groups.front().push_back({"with resolution", more, first, paperMap});
+        more.cap = more.cutOff = true;
+        groups.front().push_back({"with cap of 64 and cut-off", more, first, paperMap});
         for (const auto& [name, member] : {std::pair{"without off screen", &Economies::offScreen},
                                            std::pair{"without narrow", &Economies::narrow},
                                            std::pair{"without scissor", &Economies::scissor},
-                                           std::pair{"without resolution", &Economies::resolution},
                                            std::pair{"without occlusion", &Economies::occlusion},
                                            std::pair{"without share", &Economies::share}}) {
             Economies less = all;
             less.*member = false;
-            groups.front().push_back({name, less, first});
+            groups.front().push_back({name, less, first, paperMap});
         }
     }
+    const auto settingsOf = [&](const Case& c) {
+        TreeSettings settings = paperSettings(world, c.economies);
+        settings.mapSize = c.mapSize;
+        if (c.economies.cap) settings.mostMaps = 64;
+        return settings;
+    };
     for (const std::vector<Case>& group : groups) {
         std::vector<std::unique_ptr<MirrorStage>> stages;
         std::vector<std::vector<double>> times(group.size());
@@ -215,7 +230,7 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
                         std::make_unique<MirrorStage>(world, options.size, group[i].curved, eightBits()));
                 if (i >= stages.size()) continue;
                 const std::uint64_t before = stages[i]->trianglesDrawn();
-                const double ms = frameTime(*stages[i], paperSettings(world, group[i].economies));
+                const double ms = frameTime(*stages[i], settingsOf(group[i]));
                 triangles[i] = stages[i]->trianglesDrawn() - before;
                 if (round > 0) times[i].push_back(ms);
                 if (round == 0 && ms > 500) rounds = 3;
@@ -223,7 +238,7 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         if (options.stop()) return out;
         std::vector<glm::vec3> reference;
         for (std::size_t i = 0; i < group.size(); ++i) {
-            const ReflectionTree& tree = stages[i]->draw(paperSettings(world, group[i].economies));
+            const ReflectionTree& tree = stages[i]->draw(settingsOf(group[i]));
             const std::vector<glm::vec3> image = stages[i]->read();
             if (i == 0) reference = image;
             const double psnr =
@@ -254,8 +269,10 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
                                 {"ratio_to_all", gain},
                                 {"psnr_db", psnr}});
         }
-        if (options.save && !world.curved.empty() == (group.front().curved != CurvedMaps::none)) {
-            std::string name = "culled_" + world.name;
+        if (options.save) {
+            std::string name = group[1].name + " " + world.name;
+            name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == ',' || c == '\''; }),
+                       name.end());
             std::replace(name.begin(), name.end(), ' ', '_');
             saveRadiance(stages[1]->read(), options.size, *options.save, name);
         }

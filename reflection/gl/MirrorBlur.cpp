@@ -21,7 +21,7 @@ void MirrorBlur::require(const glm::ivec2& size) {
     if (pyramid_ && size_.x >= size.x && size_.y >= size.y) return;
     size_ = glm::max(size_, size);
     pyramid_ = Texture::image2D(GL_RGBA16F, size_.x, size_.y, mostLevels);
-    pyramid_.filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
+    pyramid_.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
     levels_.clear();
     for (int k = 0; k < mostLevels; ++k) {
         levels_.push_back(Framebuffer::create());
