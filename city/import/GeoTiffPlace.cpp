@@ -30,7 +30,7 @@ constexpr double harmlessTile = 16 << 20;
     throw std::runtime_error("heightfield " + file.string() + ": " + what);
 }
 
-/// libtiff's complaints go nowhere while this lives; OpenImageIO has reported what matters.
+/// libtiff's complaints go nowhere while this lives; what matters is said in our own words.
 class QuietTiff {
   public:
     QuietTiff() : error_(TIFFSetErrorHandler(nullptr)), warning_(TIFFSetWarningHandler(nullptr)) {}
@@ -45,6 +45,9 @@ class QuietTiff {
     TIFFErrorHandler error_;
     TIFFErrorHandler warning_;
 };
+
+/// For libgeotiff, which would write to the terminal.
+__attribute__((format(printf, 3, 4))) void saidNothing(GTIF*, int, const char*, ...) {}
 
 std::span<const double> doubles(TIFF* tiff, ttag_t tag) {
     std::uint16_t count = 0;
@@ -122,7 +125,8 @@ GeoTiffPlace readGeoTiffPlace(const std::filesystem::path& file) {
 
     place.noData = gdalNoData(tiff.get());
 
-    const std::unique_ptr<GTIF, decltype(&GTIFFree)> keys(GTIFNew(tiff.get()), &GTIFFree);
+    const std::unique_ptr<GTIF, decltype(&GTIFFree)> keys(GTIFNewEx(tiff.get(), &saidNothing, nullptr),
+                                                          &GTIFFree);
     double metres = 1;
     double centre =
         0;  // pixels from the reference point to the corner: half a pixel where points, not areas, are stored
