@@ -47,6 +47,14 @@ void keepNewest(std::unordered_map<osmium::object_id_type, T*>& map, T& object) 
     if (!fresh && place->second->version() < object.version()) place->second = &object;
 }
 
+/// libosmium takes strings from .pbf files as they come, also with zero bytes within, then takes these for
+/// the ends of keys and values, and after an odd number of them reads on behind the list.
+bool inPairs(const osmium::TagList& tags) {
+    const unsigned char* const end = tags.data() + tags.byte_size();
+    const auto ends = std::count(tags.data() + sizeof(osmium::TagList), end, static_cast<unsigned char>(0));
+    return tags.empty() || (ends % 2 == 0 && end[-1] == 0);
+}
+
 Objects readObjects(const osmium::io::File& file) {
     Objects objects;
     osmium::io::Reader reader{file};
@@ -54,6 +62,9 @@ Objects readObjects(const osmium::io::File& file) {
     while (osmium::memory::Buffer buffer = reader.read()) {
         for (auto& item : buffer.select<osmium::OSMObject>()) {
             if (!item.visible()) continue;
+            if (!inPairs(item.tags()))
+                throw std::runtime_error("there is a zero byte in a tag of object " +
+                                         std::to_string(item.id()));
             if (item.type() == osmium::item_type::node) {
                 auto& node = static_cast<osmium::Node&>(item);
                 if (!node.location().valid()) {
