@@ -188,12 +188,18 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
     };
     const CurvedMaps first = world.curved.empty() ? CurvedMaps::none : CurvedMaps::viewDependent;
     std::vector<std::vector<Case>> groups;
+    // Those that leave the picture alone; `resolution` scales view-dependent maps of curved reflectors.
     Economies all;
-    all.cap = all.cutOff = all.detail = false;  // these change the picture
-    groups.push_back({{"all", Economies::paper(), first}, {"culled", all, first}});
-    if (!world.curved.empty())
-        groups.push_back(
-            {{"cubes, all", Economies::paper(), CurvedMaps::cube}, {"cubes, culled", all, CurvedMaps::cube}});
+    all.cap = all.cutOff = all.detail = all.resolution = false;
+    const CurvedMaps second = world.curved.empty() ? CurvedMaps::none : CurvedMaps::cube;
+    const glm::ivec2 paperMap(256, 256), pictureMap(0, 0);
+    groups.push_back({{"256 x 256, all", Economies::paper(), first, paperMap},
+                      {"256 x 256, culled", all, first, paperMap}});
+    if (first != second)
+        groups.push_back({{"256 x 256, cubes, all", Economies::paper(), second, paperMap},
+                          {"256 x 256, cubes, culled", all, second, paperMap}});
+    groups.push_back({{"picture's texels, all", Economies::paper(), second, pictureMap},
+                      {"picture's texels, culled", all, second, pictureMap}});
     if (eachEconomy) {
         Economies more = all;
         more.resolution = true;
@@ -219,7 +225,6 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
     for (const std::vector<Case>& group : groups) {
         std::vector<std::unique_ptr<MirrorStage>> stages;
         std::vector<std::vector<double>> times(group.size());
-        std::vector<ReflectionTree> trees(group.size());
         std::vector<std::uint64_t> triangles(group.size());
         // Interleaved; the unculled one takes seconds on a street of windows.
         int rounds = 7;
