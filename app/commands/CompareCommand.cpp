@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <glm/trigonometric.hpp>
 #include <iostream>
 
 #include "app/commands/Commands.h"
@@ -19,13 +20,14 @@ namespace {
 void printRows(const std::vector<CompareRow>& rows) {
     std::vector<std::vector<std::string>> table{{"method", "set", "cars", "views", "frame ms",
                                                  "reflections ms", "FLIP", "to rerender", "PSNR dB",
-                                                 "flicker", "maps a frame", "front"}};
+                                                 "flicker", "angle deg", "maps a frame", "front"}};
     for (const CompareRow& row : rows)
         table.push_back({row.point.title(), row.point.setting, std::to_string(row.cars), row.views,
                          fixed(row.frame.median, 1), fixed(row.reflection.median, 2),
                          fixed(row.againstTruth.flip, 4), fixed(row.againstRerender.flip, 4),
                          fixed(row.againstTruth.psnr, 1), fixed(row.againstTruth.flicker, 5),
-                         fixed(row.mapsPerFrame, 1), row.onFront ? "*" : ""});
+                         fixed(glm::degrees(row.againstTruth.angle), 1), fixed(row.mapsPerFrame, 1),
+                         row.onFront ? "*" : ""});
     std::cout << formatTable(table) << "\n";
     for (const FrontVerdict& v : frontVerdicts(rows))
         if (v.points > 0)

@@ -5,15 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <optional>
 
 #include "app/commands/CarsStage.h"
 #include "app/commands/MirrorMask.h"
 #include "app/commands/ReflectionSource.h"
+#include "app/compare/FeatureAngles.h"
 #include "app/compare/PictureErrorsOf.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ToneMap.h"
+#include "app/raytrace/ViewRays.h"
 #include "app/render/Readback.h"
 #include "app/report/Progress.h"
 
@@ -116,6 +119,7 @@ struct Contender {
     std::vector<glm::vec3> radiance;  ///< of the last frame, where HDR-FLIP is measured
     MeanErrors againstTruth, againstRerender;
     PictureErrors last;
+    double angle = PictureErrors::unknown;
 };
 
 /// One stage's run: the same cars under the same views for all contenders.
@@ -127,6 +131,7 @@ class Run {
         : scene_(scene),
           prepared_(prepared),
           renderer_(renderer),
+          rays_(rays),
           options_(options),
           target_(target),
           stage_(stage),
@@ -162,6 +167,7 @@ class Run {
     void step(std::uint32_t frame);
     double draw(ReflectionSource& source);
     void judge(bool flickers, bool last);
+    void measureAngles();
     Picture shownNow() const {
         Image8 image = readPixels(target_.framebuffer(), target_.size());
         return {image.size.x, image.size.y, std::move(image.rgba)};
@@ -175,6 +181,7 @@ class Run {
     const Scene& scene_;
     const PreparedReflections& prepared_;
     SceneRenderer& renderer_;
+    RayTracer& rays_;
     const CompareOptions& options_;
     const OffscreenTarget& target_;
     CarsStage& stage_;
@@ -314,6 +321,33 @@ void Run::judge(bool flickers, bool last) {
         c.last = byTruth.errorsOf(judged);
         c.againstTruth.add(c.last);
     }
+    if (last) measureAngles();
+}
+
+/// Every eighth pixel that mirrors, of the frame that was judged last.
+void Run::measureAngles() {
+    TraceOptions plain;
+    plain.plain = true;
+    const View& view = picture_.views.front();
+    const TracedPicture picture = rays_.render(view, plain);
+    const ViewRays through(view);
+    std::vector<MirroringPoint> points;
+    constexpr std::size_t step = 8;
+    const auto width = static_cast<std::size_t>(picture.size.x);
+    for (std::size_t i = 0; i < picture.kind.size() && i < mask_.size(); i += step) {
+        if (mask_[i] == 0 || picture.kind[i] != SeenKind::vehicle) continue;
+        const glm::vec3 ray = glm::normalize(
+            through.through({static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f}));
+        points.push_back({view.eye + static_cast<double>(picture.distance[i]) * glm::dvec3(ray),
+                          glm::normalize(glm::reflect(ray, picture.normal[i])), picture.vehicle[i]});
+    }
+    // A map is asked for once.
+    std::ranges::stable_sort(points, {}, &MirroringPoint::vehicle);
+    std::map<std::uint32_t, std::uint32_t> indexOf;
+    for (std::uint32_t i = 0; i < picture_.vehicles.size(); ++i) indexOf[picture_.vehicles[i].id] = i;
+    for (Contender& c : contenders_)
+        c.angle = meanFeatureAngle(
+            points, [&](std::uint32_t id) { return c.source->shownMap(picture_, indexOf[id]); });
 }
 
 void Run::collect(std::vector<CompareRow>& rows) const {
@@ -342,6 +376,7 @@ void Run::collect(std::vector<CompareRow>& rows) const {
         row.mapsPerFrame = c.maps / static_cast<double>(c.frameMs.size());
         row.textureBytes = c.source->textureBytes();
         row.againstTruth = c.againstTruth.value();
+        row.againstTruth.angle = c.angle;
         row.againstRerender = c.againstRerender.value();
         rows.push_back(std::move(row));
     }

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
+#include "app/compare/FeatureAngles.h"
 #include "app/frame/FrameScene.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/raytrace/RayTracer.h"
@@ -27,6 +29,9 @@ class ReflectionSource {
     virtual bool keepsMaps() const = 0;
     virtual double mapsRebuilt() const = 0;  ///< in the last frame
     virtual std::size_t textureBytes() const = 0;
+    /// The map that a vehicle (by index) was given in the last frame, with its distances, for measuring: it
+    /// is read back. Nothing where distances are not those of what is shown. Good until the next call.
+    virtual std::optional<ShownMap> shownMap(const FrameScene& scene, std::uint32_t vehicle) = 0;
 };
 
 /// Any of the program's methods. `rays` is what `raytrace` traces with; it must outlive the source.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <string_view>
 
 #include "app/report/Table.h"
@@ -60,7 +61,8 @@ std::string tableRow(const CompareRow& row) {
     html += "<td>" + std::to_string(row.cars) + "</td><td class=\"text\">" + viewsName(row.views) + "</td>";
     html += cell(row.frame.median, 1) + cell(row.reflection.median, 2) + cell(row.ratioToNone, 2);
     html += cell(e.flip, 4) + cell(row.againstRerender.flip, 4) + cell(e.hdrFlip, 4) + cell(e.psnr, 1) +
-            cell(e.ssim, 3) + cell(1000 * e.flicker, 2) + cell(row.mapsPerFrame, 1);
+            cell(e.ssim, 3) + cell(1000 * e.flicker, 2) + cell(glm::degrees(e.angle), 1) +
+            cell(row.mapsPerFrame, 1);
     html += std::string("<td class=\"mark\">") + (row.onFront ? "&#9679;" : "") + "</td></tr>\n";
     return html;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <map>
 #include <utility>
 
@@ -18,11 +19,9 @@ CostAndError placeOf(const CompareRow& row) {
 }
 
 nlohmann::ordered_json errorsOf(const PictureErrors& e) {
-    return {{"psnr_db", e.psnr},
-            {"ssim", e.ssim},
-            {"mean_flip", e.flip},
-            {"mean_hdr_flip", e.hdrFlip},
-            {"flicker", e.flicker}};
+    return {{"psnr_db", e.psnr},    {"ssim", e.ssim},
+            {"mean_flip", e.flip},  {"mean_hdr_flip", e.hdrFlip},
+            {"flicker", e.flicker}, {"feature_angle_deg", glm::degrees(e.angle)}};
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct PictureErrors {
     double flip = unknown;     ///< mean LDR-FLIP
     double hdrFlip = unknown;  ///< mean HDR-FLIP
     double flicker = unknown;  ///< see reflection::flicker
+    double angle = unknown;    ///< radians, see meanFeatureAngle; against the truth alone
 };
 
 /// One measured point.

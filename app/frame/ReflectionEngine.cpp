@@ -189,6 +189,11 @@ void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMa
     impl_->forget();
 }
 
+void ReflectionEngine::keepDistances() {
+    impl_->atlas.keepNearness();
+    impl_->forget();
+}
+
 bool ReflectionEngine::buildsOnGpu() const {
     return impl_->onGpu();
 }
@@ -394,6 +399,7 @@ const ReflectionPlan& ReflectionEngine::update(const FrameScene& scene, std::spa
                 content.excludedVehicle = scene.vehicles[job.vehicle].id;
                 drawer.drawCube(job.centre, engine.atlas.target(job.slot), content);
                 engine.atlas.finishDrawn(job.slot);
+                engine.atlas.setCentre(job.slot, job.centre);
             }
         } else {
             engine.buildMaps(scene, engine.plan.jobs);

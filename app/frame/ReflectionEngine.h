@@ -96,6 +96,10 @@ class ReflectionEngine {
     /// Reads a local map back from the GPU: for tests and measurements, since it waits.
     reflection::PackedMips mapIn(reflection::LocalMapSlot slot) const;
 
+    /// From now on local maps keep their distances whether they are looked up with parallax or not: for
+    /// measurements.
+    void keepDistances();
+
     /// Whether local maps are made by the GPU with the present settings.
     bool buildsOnGpu() const;
 

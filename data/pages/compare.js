@@ -21,6 +21,7 @@ document.querySelectorAll('.key[data-method]').forEach(key => { key.style.backgr
 const measures = {
   'mean_flip': ['mean FLIP', r => r.mean_flip],
   'against_rerender.mean_flip': ['mean FLIP to re-rendering', r => r.against_rerender.mean_flip],
+  'angle': ['angle of features, degrees', r => r.feature_angle_deg],
   'flicker': ['flicker, ‰', r => r.flicker === null ? null : 1000 * r.flicker],
   'mse': ['mean squared error', r => r.psnr_db === null ? null : Math.pow(10, -r.psnr_db / 10)],
 };

@@ -76,7 +76,6 @@ void LocalMapAtlas::keepNearness() {
         Impl::SizeClass& c = impl_->classes[i];
         if (c.layers == 0) continue;
         c.nearness = Impl::nearnessOf(localMapFaceSizes[i], c.layers);
-        c.centres.resize(static_cast<std::size_t>(c.layers));
     }
 }
 
@@ -105,8 +104,8 @@ void LocalMapAtlas::reserve(int sizeClass, int layers) {
             glCopyImageSubData(c.nearness.name(), GL_TEXTURE_CUBE_MAP_ARRAY, 0, 0, 0, 0, nearness.name(),
                                GL_TEXTURE_CUBE_MAP_ARRAY, 0, 0, 0, 0, faceSize, faceSize, 6 * c.layers);
         c.nearness = std::move(nearness);
-        c.centres.resize(static_cast<std::size_t>(grown));
     }
+    c.centres.resize(static_cast<std::size_t>(grown));
     c.array = std::move(larger);
     c.words = gl::Texture::view(GL_TEXTURE_CUBE_MAP_ARRAY, c.array.name(), GL_R32UI, 0, levels, 0, 6 * grown);
     c.layers = grown;
