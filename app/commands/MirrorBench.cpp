@@ -178,19 +178,19 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
     world.depth = 2;
     MirrorRows out;
     out.title = world.name + ", depth 2: what culling is worth";
-    out.table.push_back(
-        {"drawn", "maps", "faces", "triangles", "texels", "frame, ms", "all / this", "PSNR, dB"});
+    out.table.push_back({"drawn", "maps", "faces", "triangles", "texels", "frame, ms", "all / this",
+                         "reflections alone", "PSNR, dB"});
     struct Case {
         std::string name;
         Economies economies;
         CurvedMaps curved;
         glm::ivec2 mapSize;
+        bool plain = false;  ///< without any reflection
     };
     const CurvedMaps first = world.curved.empty() ? CurvedMaps::none : CurvedMaps::viewDependent;
     std::vector<std::vector<Case>> groups;
-    // Those that leave the picture alone; `resolution` scales view-dependent maps of curved reflectors.
     Economies all;
-    all.cap = all.cutOff = all.detail = all.resolution = false;
+    all.cap = all.cutOff = all.detail = false;  // these change the picture
     const CurvedMaps second = world.curved.empty() ? CurvedMaps::none : CurvedMaps::cube;
     const glm::ivec2 paperMap(256, 256), pictureMap(0, 0);
     groups.push_back({{"256 x 256, all", Economies::paper(), first, paperMap},
@@ -202,13 +202,12 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
                       {"picture's texels, culled", all, second, pictureMap}});
     if (eachEconomy) {
         Economies more = all;
-        more.resolution = true;
-        groups.front().push_back({"with resolution", more, first, paperMap});
         more.cap = more.cutOff = true;
         groups.front().push_back({"with cap of 64 and cut-off", more, first, paperMap});
         for (const auto& [name, member] : {std::pair{"without off screen", &Economies::offScreen},
                                            std::pair{"without narrow", &Economies::narrow},
                                            std::pair{"without scissor", &Economies::scissor},
+                                           std::pair{"without resolution", &Economies::resolution},
                                            std::pair{"without occlusion", &Economies::occlusion},
                                            std::pair{"without share", &Economies::share}}) {
             Economies less = all;
@@ -220,8 +219,11 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         TreeSettings settings = paperSettings(world, c.economies);
         settings.mapSize = c.mapSize;
         if (c.economies.cap) settings.mostMaps = 64;
+        if (c.plain) settings.depth = 0;
         return settings;
     };
+    for (std::vector<Case>& group : groups)
+        group.push_back({"no reflections", all, group[0].curved, paperMap, true});
     for (const std::vector<Case>& group : groups) {
         std::vector<std::unique_ptr<MirrorStage>> stages;
         std::vector<std::vector<double>> times(group.size());
@@ -251,6 +253,9 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
             std::vector<double> ratio;
             for (std::size_t k = 0; k < times[i].size(); ++k) ratio.push_back(times[0][k] / times[i][k]);
             const double gain = timingOf(ratio).median;
+            const double plain = timingOf(times.back()).median;
+            const double alone =
+                (timingOf(times[0]).median - plain) / std::max(timingOf(times[i]).median - plain, 1e-3);
             const reflection::TreeCounters& c = tree.counters;
             out.table.push_back({group[i].name, std::to_string(c.generated()), std::to_string(c.faces),
                                  std::to_string(triangles[i]), std::to_string(c.texels),
@@ -272,6 +277,7 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
                                 {"objects_culled", c.objectsCulled},
                                 {"frame_ms", toJson(timingOf(times[i]))},
                                 {"ratio_to_all", gain},
+                                {"ratio_to_all_reflections_alone", alone},
                                 {"psnr_db", psnr}});
         }
         if (options.save) {

@@ -261,16 +261,17 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     node.throughput = image.throughput * reflectance;
     node.roughness = static_cast<float>(roughness);
     node.bounds = seen.portal.bounds;
-    // A rough mirror's filter reaches beyond its edge, by some two standard deviations; a map whose texels are not the
-    // picture's pixels is interpolated, a texel beyond.
+    // A rough mirror's filter reaches beyond its edge, by some three standard deviations; a map whose texels
+    // are not the picture's pixels is interpolated, a texel beyond.
     NdcRect seenThrough = seen.portal.bounds;
     const bool texelsArePixels = image.grid == tree_.roots[image.root].size && settings_.levelScale >= 1;
     const bool larger = perspective && (roughness > 0 || !texelsArePixels);
     if (larger) {
-        const double reach = 2 * glossAngle(roughness);
+        const double reach = 3 * glossAngle(roughness);
         const double texels = texelsArePixels ? 0 : 3 / std::pow(settings_.levelScale, image.level);
-        const glm::dvec2 margin = reach * glm::dvec2(node.view.clipFromView[0][0], node.view.clipFromView[1][1]) +
-                                  texels / glm::dvec2(image.grid);
+        const glm::dvec2 margin =
+            reach * glm::dvec2(node.view.clipFromView[0][0], node.view.clipFromView[1][1]) +
+            texels / glm::dvec2(image.grid);
         seenThrough.low = glm::max(seenThrough.low - margin, glm::dvec2(-1));
         seenThrough.high = glm::min(seenThrough.high + margin, glm::dvec2(1));
     }
