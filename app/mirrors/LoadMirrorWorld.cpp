@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -118,6 +119,20 @@ void readCurved(const Place& p, MirrorWorld& world) {
     world.curved.push_back(std::move(c));
 }
 
+/// Of one object, by its numbers alone; 0 for what `readObject` will refuse.
+int trianglesOf(const Place& p) {
+    const std::string kind = p.at("kind").text();
+    if (kind == "box") return 12;
+    if (kind == "mirror" && p.has("corners"))
+        return std::max(static_cast<int>(p.at("corners").items().size()) - 2, 0);
+    if (kind == "panel" && p.has("columns") && p.has("rows"))
+        return 2 * p.at("columns").whole(1, 1000) * p.at("rows").whole(1, 1000);
+    if (kind == "pillar" && p.has("slices")) return 2 * p.at("slices").whole(3, 512);
+    if ((kind == "ball" || kind == "chrome ball") && p.has("slices") && p.has("stacks"))
+        return 2 * p.at("slices").whole(3, 512) * (p.at("stacks").whole(2, 512) - 1);
+    return 0;
+}
+
 void readObject(const Place& p, MirrorWorld& world) {
     const std::string kind = p.at("kind").text();
     LitMesh mesh;
@@ -192,10 +207,19 @@ MirrorWorld parseMirrorWorld(const std::string& text, const std::string& name) {
         world.horizon = sky.at("horizon").share();
         world.nadir = sky.at("nadir").share();
     }
-    for (const Place& p : top.at("objects").items()) readObject(p, world);
     const Place triangles = top.at("triangles");
-    const auto counted = static_cast<int>(world.triangles());
-    if (triangles.whole(0, 100000000) != counted)
+    const int promised = triangles.whole(0, 10000000);
+    int counted = 0;
+    for (const Place& p : top.at("objects").items()) {
+        // Before anything is made of it: a number too many must not cost the machine's memory.
+        const int more = trianglesOf(p);
+        if (more > promised - counted)
+            p.refuse("with its " + std::to_string(more) + " triangles there are more than 'triangles' says",
+                     "correct that number or the objects");
+        counted += more;
+        readObject(p, world);
+    }
+    if (promised != counted)
         triangles.refuse("the objects have " + std::to_string(counted) + " triangles, not the number given",
                          "correct the number or the objects");
     return world;

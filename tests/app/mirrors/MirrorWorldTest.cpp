@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <random>
 
 #include "app/mirrors/LitShapes.h"
 #include "app/mirrors/MirrorTruth.h"
@@ -109,6 +112,44 @@ TEST(SceneFiles, AreRefusedWithThePlaceAndTheRemedy) {
     EXPECT_THAT(complaintOf("[]"), HasSubstr("is not an object"));
     EXPECT_THAT(complaintOf(""), HasSubstr("not JSON"));
     EXPECT_THROW(loadMirrorWorld("/nowhere/scene.json"), std::runtime_error);
+}
+
+// Bytes changed, dropped and doubled at random: refused with a sentence, or read; nothing else.
+TEST(SceneFiles, SpoiltOnesEndInASentence) {
+    std::ifstream in(std::string(MIRRORSTREET_SOURCE_DIR) + "/data/scenes/paper_b.json");
+    const std::string whole((std::istreambuf_iterator<char>(in)), {});
+    ASSERT_GT(whole.size(), 500u);
+    std::mt19937_64 random(12);
+    int refused = 0;
+    for (int i = 0; i < 4000; ++i) {
+        std::string text = whole;
+        for (std::uint64_t k = random() % 4 + 1; k > 0; --k) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 4) {
+                case 0:
+                    text[at] = static_cast<char>(random() % 256);
+                    break;
+                case 1:
+                    text[at] = "0123456789-.eE[]{},\""[random() % 20];
+                    break;
+                case 2:
+                    text.erase(at, random() % 8);
+                    break;
+                default:
+                    text.insert(at, text.substr(at, random() % 12));
+                    break;
+            }
+        }
+        try {
+            const MirrorWorld world = parseMirrorWorld(text, "spoilt.json");
+            EXPECT_LT(world.triangles(), 10000000u);
+            for (const MirrorWorld::Flat& f : world.mirrors) EXPECT_GT(f.mirror.plane.area(), 0);
+        } catch (const std::runtime_error& e) {
+            ++refused;
+            EXPECT_THAT(e.what(), testing::StartsWith("spoilt.json"));
+        }
+    }
+    EXPECT_GT(refused, 2000);
 }
 
 TEST(LitShapes, AreClosedTowardsTheirOutside) {
