@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/display/GlInfo.h"
+#include "app/display/RasteriserThreads.h"
 
 namespace app {
 
@@ -111,6 +112,7 @@ struct OffscreenContext::Impl {
         if (eglMakeCurrent(display, surface, surface, context) != EGL_TRUE) return "eglMakeCurrent failed";
         renderer = glText(GL_RENDERER);
         version = glText(GL_VERSION);
+        spreadRasteriserThreads();
         return {};
     }
 };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/display/GlInfo.h"
+#include "app/display/RasteriserThreads.h"
 
 namespace app {
 
@@ -112,6 +113,7 @@ Window::Window(const WindowOptions& options) {
     setVsync(options.vsync);
     impl_->renderer = glText(GL_RENDERER);
     impl_->version = glText(GL_VERSION);
+    spreadRasteriserThreads();
 }
 
 Window::~Window() = default;
