@@ -8,7 +8,9 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "app/render/ChangedParts.h"
 #include "app/render/CityPass.h"
 #include "app/render/CubeDestination.h"
 #include "app/render/CubeFaces.h"
@@ -106,7 +108,8 @@ struct SceneRenderer::Impl {
           signalLamps(city.signalHeads),
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
-          viewTarget(renderOptions.antialiasing) {
+          viewTarget(renderOptions.antialiasing),
+          signalHeads(city.signalHeads) {
         for (std::size_t target = 0; target < 2; ++target)
             skyPrograms[target] =
                 gl::Program::fromFiles({"sky.vert", "sky.frag"}, definesFor(static_cast<PassTarget>(target)));
@@ -199,6 +202,45 @@ struct SceneRenderer::Impl {
         return found;
     }
 
+    bool drewLast(const PassView& pass, glm::ivec2 size) const {
+        return drawnEye == pass.eye && drawnClip == pass.clipFromRelative && drawnSize == size &&
+               drawnIn == lighting;
+    }
+
+    /// Before a view is drawn: what dissolves goes on where the last view is drawn again, and ends elsewhere.
+    void carryOnDissolving(const PassView& pass, glm::ivec2 size) {
+        const int frames = std::exchange(dissolveFrames, 0);
+        if (!drewLast(pass, size))
+            viewTarget.endDissolving();
+        else if (frames > 1) {
+            if (!viewTarget.dissolving()) held = drawn;
+            viewTarget.dissolve(frames);
+        }
+        drawnEye = pass.eye;
+        drawnClip = pass.clipFromRelative;
+        drawnSize = size;
+        drawnIn = lighting;
+    }
+
+    void showWhatMoves(const PassView& pass, glm::ivec2 size) {
+        if (viewTarget.dissolving())
+            findChanges(
+                held, poses, signalColours, signalHeads, lighting.sunDirection,
+                [&](const vehicles::VehiclePose& pose) { return vehiclePass.boundsOf(pose); },
+                // What has moved by less than a pixel stands for as long: its surroundings need not change.
+                [&](const vehicles::VehiclePose& was, const vehicles::VehiclePose& is) {
+                    const double far = glm::distance(is.position, pass.eye);
+                    return glm::distance(was.position, is.position) * pass.pixelsPerRadian > far ||
+                           std::abs(was.heading - is.heading) > 0.02 || was.braking != is.braking;
+                },
+                [&](std::uint64_t name, const city::Aabb& box) {
+                    if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size))
+                        viewTarget.keepLive(name, *pixels);
+                });
+        drawn.poses = poses;
+        drawn.colours = signalColours;
+    }
+
     RenderOptions options;
     Skyline skyline;
     mutable std::optional<SkylineView> lastSkyline;
@@ -214,6 +256,14 @@ struct SceneRenderer::Impl {
     std::array<gl::Program, 2> skyPrograms;
 
     ViewTarget viewTarget;
+    std::vector<city::SignalHead> signalHeads;
+    int dissolveFrames = 0;
+    MovingParts drawn;       ///< with the last view
+    MovingParts held;        ///< with the picture that dissolves
+    glm::dvec3 drawnEye{0};  ///< the last view's
+    glm::mat4 drawnClip{0};
+    glm::ivec2 drawnSize{0};
+    Lighting drawnIn;
 
     std::unique_ptr<GlassPass> glassPass;
     std::unique_ptr<reflection::MirrorPass> mirrorPass;  ///< while plans need it
@@ -344,8 +394,19 @@ bool SceneRenderer::hides(const reflection::EyeView& from, const reflection::Hal
     return skyline != nullptr && skyline->hides(box);
 }
 
-void SceneRenderer::setDetail(const DrawingDetail& detail) {
+void SceneRenderer::setDetail(const DrawingDetail& detail, int dissolveFrames) {
     impl_->detail = detail;
+    impl_->dissolveFrames = dissolveFrames;
+}
+
+void SceneRenderer::prepareForChanges(glm::ivec2 size) {
+    setDrawState();
+    impl_->viewTarget.prepareDissolving(size);
+    impl_->drawnSize = {};
+}
+
+bool SceneRenderer::drewLast(const View& view) const {
+    return impl_->drewLast({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size);
 }
 
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
@@ -355,10 +416,12 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     if (view.size.x <= 0 || view.size.y <= 0) return;
     my.updateShadow();
     setDrawState();
+    my.carryOnDissolving({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size);
     my.viewTarget.begin(view.size, my.detail.scale);
     const float drawnShare = static_cast<float>(my.viewTarget.drawn().y) / static_cast<float>(view.size.y);
     PassView pass(view.eye, view.clipFromView * view.viewFromWorld, drawnShare * pixelsPerRadian(view));
     pass.skyline = my.skylineFor(pass);
+    my.showWhatMoves(pass, view.size);
     my.setFrame(pass);
 
     my.chosen.clear();

@@ -63,7 +63,15 @@ class SceneRenderer final : public reflection::SceneDrawer {
     void prepare(const FrameScene& scene);
 
     /// Of all views from now on. Costs nothing to change.
-    void setDetail(const DrawingDetail& detail);
+    /// `dissolveFrames`: where the next view is the one that was drawn last, in the same light, the change is
+    /// not seen at once: for so many frames, ever more of the picture shows the new detail, and what moves
+    /// shows it from the start. Its cost is the new one's at once. In another view it is seen at once, for
+    /// there all changes.
+    void setDetail(const DrawingDetail& detail, int dissolveFrames = 0);
+    /// Makes now what changes of detail would wait for when they first come, for views of this size.
+    void prepareForChanges(glm::ivec2 size);
+    /// Whether it is this view, in the prepared scene's light, that was drawn last.
+    bool drewLast(const View& view) const;
 
     /// The city's glass, to which the indices of mirror plans refer; empty: none. Without it plans are
     /// ignored.

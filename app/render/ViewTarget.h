@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 
+#include "app/render/Dissolve.h"
 #include "app/render/SceneRenderer.h"
+#include "reflection/gl/Buffer.h"
 #include "reflection/gl/Framebuffer.h"
 #include "reflection/gl/Program.h"
 #include "reflection/gl/Texture.h"
@@ -12,7 +14,7 @@
 namespace app {
 
 /// What a view is drawn into before it is antialiased and handed on: colour (RGBA8, display values) and
-/// depth.
+/// depth. A change of detail can be hidden in a view that stands: see `dissolve`.
 class ViewTarget {
   public:
     explicit ViewTarget(Antialiasing antialiasing);
@@ -28,9 +30,27 @@ class ViewTarget {
     /// `antialiasing`: see DrawingDetail.
     void finish(std::uint32_t framebuffer, double antialiasing = 1);
 
+    /// From the picture that was finished last, whatever its size and antialiasing, the next ones take over
+    /// in parts, in so many frames. Before `begin`. Nothing where none of this size was finished before.
+    /// Costs a copy of a picture now, and much less than one in each of the frames.
+    void dissolve(int frames);
+    /// Makes now what the first call of `dissolve` and a first smaller picture would wait for: some
+    /// milliseconds, tens where OpenGL is software.
+    void prepareDissolving(glm::ivec2 size);
+    bool dissolving() const { return dissolve_.active(); }
+    /// Pixels that show the next pictures already: see Dissolve.
+    void keepLive(std::uint64_t name, const glm::ivec4& pixels) { dissolve_.keepLive(name, pixels); }
+    /// The next picture is shown whole.
+    void endDissolving() { dissolve_.stop(); }
+
   private:
+    void allocate(glm::ivec2 size);
+    void allocateShown();
     /// In so many rows of pixels, the middle ones.
     void mendEdges(int rows);
+    /// One sample a pixel, without edges mended.
+    void makeSmooth(bool withDepth, const char* purpose);
+    void replaceParts(const reflection::gl::Texture& image);
 
     Antialiasing antialiasing_;
     glm::ivec2 size_{0};
@@ -44,6 +64,14 @@ class ViewTarget {
     reflection::gl::Program findEdges_;
     reflection::gl::Program fxaa_;
     reflection::gl::VertexArray nothing_;
+
+    std::uint32_t finished_ = 0;  ///< framebuffer that holds the last picture, before it was stretched
+    Dissolve dissolve_;
+    reflection::gl::Texture shown_;  ///< while dissolving: what is shown
+    reflection::gl::Framebuffer shownTarget_;
+    reflection::gl::Program tiles_;
+    reflection::gl::Buffer rectangles_;
+    reflection::gl::VertexArray rectangleArray_;
 };
 
 }  // namespace app

@@ -129,6 +129,65 @@ TEST_F(SceneRendererGlTest, aSmallerPictureIsStretchedOverTheWholeView) {
     }
 }
 
+TEST_F(SceneRendererGlTest, aChangeOfDetailGoesUnseenInAViewThatStands) {
+    const city::CityModel city = test::boxCity();
+    const View view = lookAt({-14, -5, 3}, {10, -2, 1}, 1.0, size_);
+    const auto differing = [](const Image8& a, const Image8& b) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < a.rgba.size(); ++i)
+            count += std::abs(int(a.rgba[i]) - int(b.rgba[i])) > 1 ? 1 : 0;
+        return count;
+    };
+    constexpr int frames = 20;
+    const DrawingDetail coarse{0.5, 0, 2.5};
+    for (Antialiasing antialiasing : {Antialiasing::none, Antialiasing::fxaa, Antialiasing::msaa4}) {
+        RenderOptions options;
+        options.antialiasing = antialiasing;
+        SceneRenderer renderer(city, models_, options), plain(city, models_, options);
+        renderer.prepareForChanges(size_);
+        const Image8 full = draw(renderer, view);
+        EXPECT_EQ(full.rgba, draw(plain, view).rgba);
+        plain.setDetail(coarse);
+        const Image8 end = draw(plain, view);
+        const std::size_t all = differing(full, end);
+        ASSERT_GT(all, 1000u);
+        renderer.setDetail(coarse, frames);
+        Image8 before = full;
+        std::size_t most = 0;
+        for (int frame = 0; frame < frames; ++frame) {
+            const Image8 now = draw(renderer, view);
+            most = std::max(most, differing(before, now));
+            before = now;
+        }
+        EXPECT_LT(most, all / 5) << "seen";
+        EXPECT_LT(differing(before, end), all / 100) << "not there in the end";
+        EXPECT_EQ(draw(renderer, view).rgba, end.rgba);
+
+        // What moves is where it is, at once.
+        renderer.setDetail({}, frames);
+        draw(renderer, view);
+        scene_.vehicles[0].position.x -= 4;
+        const Image8 moved = draw(renderer, view);
+        plain.setDetail({});
+        const Image8 truth = draw(plain, view);
+        std::size_t wrong = 0, right = 0;
+        const Image8 stood = full;
+        for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
+            if (std::abs(int(truth.rgba[i]) - int(stood.rgba[i])) < 40) continue;  // the car, here or there
+            ++(std::abs(int(truth.rgba[i]) - int(moved.rgba[i])) <= 1 ? right : wrong);
+        }
+        EXPECT_GT(right, 2000u);
+        EXPECT_LT(wrong, right / 20);
+        scene_.vehicles[0].position.x += 4;
+
+        // From elsewhere it is new at once.
+        renderer.setDetail(coarse, frames);
+        const View other = lookAt({-14, -5, 3.5}, {10, -2, 1}, 1.0, size_);
+        plain.setDetail(coarse);
+        EXPECT_EQ(draw(renderer, other).rgba, draw(plain, other).rgba);
+    }
+}
+
 TEST_F(SceneRendererGlTest, vehiclesMirrorTheirMapsAndPlainOnesDoNot) {
     // A map of pure green light: it must show on the car that has it, and only there.
     const city::CityModel city = test::boxCity();

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace app {
+
+/// In which order the parts of a standing picture are replaced by those of a new one, so that nobody sees it
+/// change: small tiles, scattered, the same number every frame. Where something moves the new picture is
+/// shown from the start and in every frame.
+///
+/// A share of a change, and not a weakened change: twice as many frames halve what each of them shows, while
+/// a cross-fade of sharp edges is seen by its weakest step already.
+class Dissolve {
+  public:
+    /// A square's side, pixels.
+    static constexpr int tile = 16;
+
+    /// All of a picture of this size is old, and new after so many frames (1 at least). Anew where one was
+    /// going on already; what moves, goes on.
+    void start(glm::ivec2 size, int frames);
+    void stop() { frame_ = frames_ = 0; }
+    bool active() const { return frame_ < frames_; }
+
+    /// Pixels x0 y0 .. x1 y1 (these not included) show the new picture from now on: where something that
+    /// moves, of this name, is and has been. Outside of the picture there is nothing to do.
+    void keepLive(std::uint64_t name, const glm::ivec4& pixels);
+
+    /// The next frame's rectangles, x0 y0 x1 y1, to be replaced: all of them together have covered the
+    /// picture when `active` ends. Precondition: active.
+    std::span<const glm::ivec4> advance();
+
+  private:
+    glm::ivec2 size_{0}, tiles_{0};
+    int frame_ = 0, frames_ = 0;
+    std::uint64_t replaced_ = 0;  ///< of the tiles in their order
+    std::map<std::uint64_t, glm::ivec4> live_;
+    std::vector<std::uint8_t> now_;  ///< by tile
+    std::vector<glm::ivec4> rectangles_;
+};
+
+}  // namespace app
