@@ -16,6 +16,8 @@ constexpr double neighbourRange = 15;
 /// Frames a map outlives its vehicle's last sight: a car behind a tree or a tour's cut back keeps its map for
 /// a second.
 constexpr std::uint64_t framesKept = 60;
+/// Vehicles no farther apart than this see the same facades, more or less, metres: the length of a building.
+constexpr double sameStreet = 30;
 /// Centres of two vehicles are no nearer to each other than this, metres: the width of a car.
 constexpr double nearestNeighbour = 1.7;
 
@@ -102,6 +104,18 @@ const ReflectionPlanner::Held* ReflectionPlanner::lenderFor(const MapJob& job, f
     return best;
 }
 
+const ReflectionPlanner::Held* ReflectionPlanner::nearestOf(std::span<const Held* const> lenders,
+                                                            const glm::dvec3& centre) {
+    const Held* best = nullptr;
+    double least = sameStreet;
+    for (const Held* lender : lenders)
+        if (const double apart = glm::distance(lender->centre, centre); apart < least) {
+            least = apart;
+            best = lender;
+        }
+    return best;
+}
+
 ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const SeenVehicle> seen,
                                        std::span<const float> centreHeights, const PlanOptions& options) {
     ++frame_;
@@ -185,9 +199,18 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
             ++plan.postponed;
             continue;
         }
+        if (!affordable && options.share) {
+            // A vehicle must not appear without a reflection: a neighbour's map now, its own when its turn
+            // comes. When many appear at once, this costs nothing.
+            if (const Held* lender = nearestOf(lenders, job.centre); lender != nullptr) {
+                plan.slots[job.vehicle] = lender->slot;
+                ++plan.borrowed;
+                ++plan.postponed;
+                continue;
+            }
+        }
         if (!affordable && job.slot.sizeClass + 1 < sizeClasses) {
-            // A vehicle must not appear without a reflection: a coarse map now, the fine one when its turn
-            // comes.
+            // Where nobody is near, a coarse map of its own.
             job.slot.sizeClass = static_cast<std::int16_t>(sizeClasses - 2);
         }
         if (map.slot.sizeClass != job.slot.sizeClass) {

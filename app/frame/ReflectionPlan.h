@@ -35,6 +35,7 @@ struct ReflectionPlan {
     std::uint32_t fresh = 0;       ///< maps kept because their error on screen is below the threshold
     std::uint32_t postponed = 0;   ///< maps that the budget left for a later frame
     std::uint32_t shared = 0;      ///< vehicles that show a neighbour's map
+    std::uint32_t borrowed = 0;    ///< of these, new vehicles: they show a neighbour's map until then
     std::uint32_t crowdedOut = 0;  ///< vehicles without a map because every place for one is taken
     std::uint64_t texels = 0;      ///< to be built
 };
@@ -91,6 +92,8 @@ class ReflectionPlanner {
     /// The map of least error on this vehicle among the lenders' that is below the threshold, or null.
     static const Held* lenderFor(const MapJob& job, float diameterPixels, float threshold,
                                  std::span<const Held* const> lenders);
+    /// The lender that is nearest to a place, in the same street; null where none is.
+    static const Held* nearestOf(std::span<const Held* const> lenders, const glm::dvec3& centre);
     /// A class with a free place: the wanted one, else the next coarser one, else a finer one that costs no
     /// more than `texels`; -1: none.
     int classWithRoom(int wanted, int layersAtMost, std::uint64_t texels) const;
