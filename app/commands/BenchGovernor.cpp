@@ -1,47 +1,43 @@
 #include <spdlog/spdlog.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "app/commands/Benches.h"
 #include "app/commands/Calibration.h"
-#include "app/commands/CarsStage.h"
-#include "app/commands/MirrorMask.h"
+#include "app/commands/GovernorPlay.h"
 #include "app/commands/PreparedScene.h"
 #include "app/commands/Version.h"
-#include "app/display/OffscreenTarget.h"
-#include "app/frame/AssembleFrame.h"
-#include "app/frame/Governor.h"
-#include "app/frame/ReflectionEngine.h"
-#include "app/render/Readback.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
-#include "reflection/truth/ImageError.h"
+#include "app/report/Timing.h"
 
 namespace app {
 
 namespace {
 
 constexpr std::uint32_t fewCars = 10, manyCars = 200;
-constexpr double frameStep = 1.0 / 30;
-/// Frames of a phase, and those at its beginning whose pictures are compared: the governor settles there.
-constexpr std::uint32_t phaseFrames = 180, comparedFrames = 24;
+constexpr std::uint32_t phaseFrames = 180;
 /// Without --budget: this share of what the finest detail took when calibrated.
 constexpr double defaultShare = 0.75;
 constexpr double settledWithin = 0.1;
 constexpr std::size_t settledWindow = 5;
 
+/// Frames of one play.
+struct Frames {
+    std::vector<double> frameMs, reflectionMs, predictedMs, position, texels;
+    std::vector<Image8> pictures;
+    std::vector<double> jumps;  ///< to each picture from the one before; the first from the last phase's
+};
+
 struct Phase {
     std::uint32_t cars = 0, visible = 0;
-    std::vector<double> frameMs, predictedMs;
     double position = 0, error = 0;
     std::string givenUp;
-    std::vector<Image8> governed, fixedDetail;
-    double largestJump = 0, largestOwn = 0, medianOwn = 0, largestRatio = 0;
+    Frames governed, finest, settled;
 };
 
 double quantile(std::vector<double> values, double share) {
@@ -71,78 +67,37 @@ double settlingSeconds(const std::vector<double>& frameMs, double budget) {
     return NAN;
 }
 
-/// Mean FLIP from each picture to the next.
-std::vector<double> jumps(const std::vector<Image8>& images) {
-    std::vector<double> found(images.empty() ? 0 : images.size() - 1);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        const glm::ivec2 size = images[i].size;
-        const std::vector<glm::vec3> a = toFloat(images[i]), b = toFloat(images[i + 1]);
-        found[i] = reflection::meanError(reflection::flip({size.x, size.y, b}, {size.x, size.y, a}));
-    });
-    return found;
+double shareWithin(const std::vector<double>& frameMs, double most) {
+    if (frameMs.empty()) return NAN;
+    const auto within = std::count_if(frameMs.begin(), frameMs.end(), [&](double ms) { return ms <= most; });
+    return static_cast<double>(within) / static_cast<double>(frameMs.size());
 }
 
-/// The scene of the load step, drawn with a detail of its own each time.
-class Play {
-  public:
-    Play(PreparedScene& stage, const Options& options)
-        : stage_(stage),
-          target_(options.resolution),
-          set_(setCarsStage(stage.scene, stage.renderer, manyCars, options.seed, options.resolution)) {
-        ReflectionSettings settings;
-        settings.gpuMapBytes = options.gpuMapBytes();
-        for (auto& engine : engines_)
-            engine = std::make_unique<ReflectionEngine>(*stage.reflections.tracer, stage.reflections.maps,
-                                                        stage.scene.models, settings);
-    }
+double median(const std::vector<double>& values) {
+    return values.empty() ? NAN : timingOf(values).median;
+}
+double largest(const std::vector<double>& values) {
+    return values.empty() ? NAN : *std::max_element(values.begin(), values.end());
+}
 
-    bool possible() const { return set_.traffic.has_value(); }
+/// The pictures' jumps, of which `last`, that of the phase before, is the first; they are let go but for the
+/// last one.
+void comparePictures(Frames& frames, std::optional<Image8>& last) {
+    if (frames.pictures.empty()) return;
+    if (last) frames.pictures.insert(frames.pictures.begin(), std::move(*last));
+    frames.jumps = jumps(frames.pictures);
+    last = std::move(frames.pictures.back());
+    frames.pictures = {};
+}
 
-    void next(Cast& cast) {
-        for (double ahead = 0; ahead < frameStep; ahead += vehicles::TrafficOptions{}.step)
-            set_.traffic->step();
-        frame_ = assembleFrame(stage_.scene.city, *set_.traffic, stage_.scene.lighting, {set_.view});
-        cast.select(frame_, set_.view, stage_.renderer);
-    }
-    /// `which` of two engines, as each keeps maps of its own.
-    FrameCost draw(std::size_t which, const Detail& detail) {
-        ReflectionEngine& engine = *engines_[which];
-        ReflectionSettings settings = engine.settings();
-        settings.detail = detail.reflection;
-        engine.configure(settings);
-        stage_.renderer.setDetail(detail.drawing);
-        finishDrawing();
-        const Stopwatch watch;
-        stage_.renderer.prepare(frame_);
-        const Stopwatch reflecting;
-        const ReflectionPlan& plan =
-            engine.update(frame_, seenIn(stage_.renderer, frame_.views), stage_.renderer);
-        const double reflectionMs = reflecting.elapsed();
-        stage_.renderer.drawView(set_.view, {engine.textures(), plan.slots}, target_.framebuffer());
-        finishDrawing();
-        return {watch.elapsed(), reflectionMs, plan.visible};
-    }
-    Image8 picture() const { return readPixels(target_.framebuffer(), target_.size()); }
-
-  private:
-    PreparedScene& stage_;
-    OffscreenTarget target_;
-    CarsStage set_;
-    std::array<std::unique_ptr<ReflectionEngine>, 2> engines_;
-    FrameScene frame_;
-};
-
-void comparePictures(Phase& phase) {
-    const std::vector<double> governed = jumps(phase.governed), own = jumps(phase.fixedDetail);
-    // From the first picture on the cars are there.
-    for (std::size_t i = 0; i < governed.size(); ++i) {
-        phase.largestJump = std::max(phase.largestJump, governed[i]);
-        phase.largestOwn = std::max(phase.largestOwn, own[i]);
-        phase.largestRatio = std::max(phase.largestRatio, governed[i] / std::max(own[i], 1e-6));
-    }
-    phase.medianOwn = own.empty() ? NAN : timingOf(own).median;
-    phase.governed.clear();
-    phase.fixedDetail.clear();
+/// Largest jump over what the traffic makes by itself there: in that frame, or in the middle one where that
+/// is more, since its own jumps need not fall on the same frames.
+double largestRatio(const Phase& phase) {
+    const double usual = median(phase.finest.jumps);
+    double worst = 0;
+    for (std::size_t i = 0; i < std::min(phase.governed.jumps.size(), phase.finest.jumps.size()); ++i)
+        worst = std::max(worst, phase.governed.jumps[i] / std::max({phase.finest.jumps[i], usual, 1e-6}));
+    return worst;
 }
 
 }  // namespace
@@ -157,79 +112,115 @@ int benchGovernor(const Options& options) {
     settings.gpuMapBytes = options.gpuMapBytes();
     settings.renderer = stage.context.renderer();
     settings.quiet = options.quiet;
+    const Stopwatch calibrating;
     const Calibration calibration =
         calibrate(stage.scene, stage.scene.lighting, stage.reflections, stage.renderer, settings);
     if (!calibration.complete || calibration.ladder.empty()) return reportBench(options, results, {});
-    spdlog::info("the ladder{}:\n{}", calibration.fromCache ? ", from the cache" : "",
-                 describe(calibration.ladder));
+    spdlog::info("the ladder{}, {:.1f} s, scatter {:.3f}, a vehicle {:.4f} ms:\n{}",
+                 calibration.fromCache ? ", from the cache" : "", calibrating.elapsed() / 1000,
+                 calibration.scatter, calibration.ladder.vehicles().ms, describe(calibration.ladder));
     const Detail finest = calibration.ladder.rungs().front().detail;
     const double budget =
         options.budgetMs > 0 ? options.budgetMs : defaultShare * calibration.ladder.rungs().front().ms();
 
-    Play play(stage, options);
-    if (!play.possible()) throw std::runtime_error("the city has no street to look down.");
+    // The governed play, and beside it, for what traffic and machine do by themselves, the same frames with
+    // the finest detail and with that which the governor settles at.
+    SceneRenderer controlRenderer(stage.scene.city, stage.scene.models, RenderOptions{});
+    ReflectionSettings reflecting;
+    reflecting.gpuMapBytes = options.gpuMapBytes();
+    const auto makePlay = [&](SceneRenderer& renderer) {
+        return std::make_unique<GovernorPlay>(stage.scene, stage.reflections, renderer, manyCars,
+                                              options.seed, options.resolution, reflecting);
+    };
+    const auto governed = makePlay(stage.renderer), unchanged = makePlay(controlRenderer),
+               settled = makePlay(controlRenderer);
+    if (!governed->possible()) throw std::runtime_error("the city has no street to look down.");
     Governor governor(calibration.ladder, budget);
+    stage.renderer.prepareForChanges(options.resolution);
     std::vector<Phase> phases;
-    Progress progress("frames", 3 * phaseFrames, options.quiet);
+    std::optional<Image8> lastGoverned, lastFinest;
+    Progress progress("frames", 9 * phaseFrames, options.quiet);
+    const auto play = [&](GovernorPlay& what, std::uint32_t cars, Frames& frames, bool pictures,
+                          const auto& draw) {
+        Cast cast(cars);
+        for (std::uint32_t frame = 0; frame < phaseFrames && !interrupted(); ++frame) {
+            what.next(cast);
+            const FrameCost cost = draw(what);
+            if (pictures) frames.pictures.push_back(what.picture());
+            frames.frameMs.push_back(cost.frameMs);
+            frames.reflectionMs.push_back(cost.reflectionMs);
+            frames.texels.push_back(static_cast<double>(what.counters().texels));
+            progress.advance();
+        }
+    };
     for (const std::uint32_t cars : {fewCars, manyCars, fewCars}) {
         Phase& phase = phases.emplace_back();
         phase.cars = cars;
-        Cast cast(cars);
-        for (std::uint32_t frame = 0; frame < phaseFrames && !interrupted(); ++frame) {
-            play.next(cast);
-            phase.predictedMs.push_back(governor.predictedMs());
-            const FrameCost cost = play.draw(0, governor.detail());
+        play(*governed, cars, phase.governed, true, [&](GovernorPlay& what) {
+            const FrameCost cost = what.draw(governor);
             phase.visible = static_cast<std::uint32_t>(cost.reflecting);
-            if (frame < comparedFrames) {
-                phase.governed.push_back(play.picture());
-                play.draw(1, finest);
-                phase.fixedDetail.push_back(play.picture());
-            }
-            governor.observe(cost);
-            phase.frameMs.push_back(cost.frameMs);
-            progress.advance();
-        }
+            phase.governed.predictedMs.push_back(governor.predictedMs());
+            phase.governed.position.push_back(governor.position());
+            return cost;
+        });
         phase.position = governor.position();
         phase.error = governor.predictedError();
         phase.givenUp = governor.givenUp();
         if (const auto news = governor.news()) spdlog::info("{} cars: {}", cars, *news);
-        comparePictures(phase);
+        comparePictures(phase.governed, lastGoverned);
+        const Detail detail = governor.detail();
+        play(*settled, cars, phase.settled, false, [&](GovernorPlay& what) { return what.draw(detail); });
+        play(*unchanged, cars, phase.finest, true, [&](GovernorPlay& what) { return what.draw(finest); });
+        comparePictures(phase.finest, lastFinest);
     }
-    stage.renderer.setDetail({});
 
     std::vector<std::vector<std::string>> table{{"cars", "seen", "budget ms", "median", "95%", "within +25%",
-                                                 "settled after s", "FLIP", "largest jump", "traffic's own",
-                                                 "given up"}};
+                                                 "unchanged detail", "settled after s", "FLIP",
+                                                 "largest jump", "traffic's own", "ratio", "given up"}};
     for (const Phase& phase : phases) {
-        if (phase.frameMs.empty()) continue;
-        const double median = timingOf(phase.frameMs).median, high = quantile(phase.frameMs, 0.95);
-        const auto within = std::count_if(phase.frameMs.begin(), phase.frameMs.end(),
-                                          [&](double ms) { return ms <= 1.25 * budget; });
-        const double share = static_cast<double>(within) / static_cast<double>(phase.frameMs.size());
-        const double settled = settlingSeconds(phase.frameMs, budget);
+        const std::vector<double>& frameMs = phase.governed.frameMs;
+        if (frameMs.empty()) continue;
+        const double share = shareWithin(frameMs, 1.25 * budget),
+                     settledAfter = settlingSeconds(frameMs, budget);
+        // What the machine does to frames whose detail never changes.
+        const double unchangedShare =
+            shareWithin(phase.settled.frameMs, 1.25 * median(phase.settled.frameMs));
+        const double jump = largest(phase.governed.jumps), own = median(phase.finest.jumps),
+                     ratio = largestRatio(phase);
         results.add({{"city", options.city},
                      {"cars", phase.cars},
                      {"visible", phase.visible},
                      {"width", options.resolution.x},
                      {"height", options.resolution.y},
                      {"budget_ms", budget},
-                     {"frame_ms", toJson(timingOf(phase.frameMs))},
-                     {"frame_ms_95", high},
+                     {"frame_ms", toJson(timingOf(frameMs))},
+                     {"frame_ms_95", quantile(frameMs, 0.95)},
                      {"within_125_percent", share},
-                     {"settled_after_s", settled},
-                     {"predicted_ms", timingOf(phase.predictedMs).median},
+                     {"unchanged_frame_ms", toJson(timingOf(phase.settled.frameMs))},
+                     {"unchanged_within_125_percent_of_its_median", unchangedShare},
+                     {"settled_after_s", settledAfter},
+                     {"predicted_ms", median(phase.governed.predictedMs)},
                      {"position", phase.position},
                      {"last_position", calibration.ladder.last()},
                      {"predicted_flip", phase.error},
-                     {"largest_jump_flip", phase.largestJump},
-                     {"own_jump_flip", phase.medianOwn},
-                     {"largest_own_jump_flip", phase.largestOwn},
-                     {"largest_jump_ratio", phase.largestRatio},
-                     {"given_up", phase.givenUp}});
+                     {"largest_jump_flip", jump},
+                     {"own_jump_flip", own},
+                     {"largest_own_jump_flip", largest(phase.finest.jumps)},
+                     {"largest_jump_ratio", ratio},
+                     {"given_up", phase.givenUp},
+                     {"frames",
+                      {{"ms", frameMs},
+                       {"reflection_ms", phase.governed.reflectionMs},
+                       {"texels", phase.governed.texels},
+                       {"position", phase.governed.position},
+                       {"jump_flip", phase.governed.jumps},
+                       {"own_jump_flip", phase.finest.jumps},
+                       {"unchanged_ms", phase.settled.frameMs}}}});
         table.push_back({std::to_string(phase.cars), std::to_string(phase.visible), fixed(budget, 1),
-                         fixed(median, 1), fixed(high, 1), fixed(100 * share, 0) + "%", fixed(settled, 2),
-                         fixed(phase.error, 4), fixed(phase.largestJump, 4), fixed(phase.medianOwn, 4),
-                         phase.givenUp.empty() ? "nothing" : phase.givenUp});
+                         fixed(median(frameMs), 1), fixed(quantile(frameMs, 0.95), 1),
+                         fixed(100 * share, 1) + "%", fixed(100 * unchangedShare, 1) + "%",
+                         fixed(settledAfter, 2), fixed(phase.error, 4), fixed(jump, 4), fixed(own, 4),
+                         fixed(ratio, 2), phase.givenUp.empty() ? "nothing" : phase.givenUp});
     }
     return reportBench(options, results, table);
 }

@@ -30,6 +30,7 @@ struct Calibration {
     DetailLadder ladder;
     bool complete = true;        ///< false: ended by `carryOn` or an interrupt, and there is no ladder
     bool fromCache = false;      ///< else measured now
+    double scatter = 0;          ///< of like frames while it was measured; see DetailBench::scatter
     std::filesystem::path file;  ///< where it is kept; empty: nowhere
 };
 

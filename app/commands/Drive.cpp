@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -100,6 +101,7 @@ void Drive::govern(const CarryOn& calibrating) {
         budget = std::numeric_limits<double>::infinity();
     }
     governor_.emplace(std::move(ladder), budget);
+    if (std::isfinite(budget)) renderer_->prepareForChanges(resolution_);
 }
 
 bool Drive::reflectIn(const Lighting& lighting, const CarryOn& carryOn) {
@@ -168,19 +170,6 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     FrameStats stats;
     frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view});
     finishDrawing();
-    if (governor_) {
-        const Rung rung = governor_->ladder().at(governor_->position());
-        renderer_->setDetail(rung.detail.drawing);
-        ReflectionSettings reflecting = reflectionSettings();
-        reflecting.detail = rung.detail.reflection;
-        engine_->configure(reflecting);
-        stats.governed = {true,
-                          governor_->position(),
-                          governor_->ladder().last(),
-                          governor_->predictedMs(),
-                          rung.error,
-                          ladder_ ? givenUp(ladder_->rungs().front().detail, rung.detail) : std::string()};
-    }
     const Stopwatch watch;
     renderer_->prepare(frame_);
     reflections_ = {};
@@ -192,10 +181,11 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     if (settings_.mirrors) planar.plan = &mirrorPlan_;
     stats.mirrors = mirrorPlan_.counters;
     if (settings_.method != ReflectionMethod::none && engine_) {
-        const Stopwatch reflecting;
         std::vector<SeenVehicle> seen;
         for (const auto& visible : renderer_->visibleVehicles(view, planar))
             seen.push_back({visible.index, visible.diameterPixels});
+        if (governor_) stats.governed = chooseDetail(seen.size(), view);
+        const Stopwatch reflecting;
         const ReflectionPlan& plan = engine_->update(frame_, seen, *renderer_);
         reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
         stats.reflectionMs = reflecting.elapsed();
@@ -206,12 +196,28 @@ FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     stats.frameMs = watch.elapsed();
     stats.drawn = renderer_->counters();
     if (governor_) {
-        governor_->observe({stats.frameMs, stats.reflectionMs, stats.reflections.visible});
+        governor_->observe(
+            {stats.frameMs, stats.reflectionMs, stats.reflections.visible, stats.reflections.texels});
         // With one rung nothing was to be held.
         if (const auto news = governor_->news(); news && governor_->ladder().rungs().size() > 1)
             spdlog::info("{}", *news);
     }
     return stats;
+}
+
+Governed Drive::chooseDetail(std::size_t seen, const View& view) {
+    governor_->expect({seen, renderer_->drewLast(view)});
+    const Rung rung = governor_->ladder().at(governor_->position());
+    renderer_->setDetail(rung.detail.drawing, governor_->dissolveFrames());
+    ReflectionSettings reflecting = reflectionSettings();
+    reflecting.detail = governor_->detail().reflection;
+    engine_->configure(reflecting);
+    return {true,
+            governor_->position(),
+            governor_->ladder().last(),
+            governor_->predictedMs(),
+            rung.error,
+            ladder_ ? givenUp(ladder_->rungs().front().detail, rung.detail) : std::string()};
 }
 
 bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const CarryOn& calibrating) {

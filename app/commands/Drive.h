@@ -79,6 +79,8 @@ class Drive {
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
     bool reflectIn(const Lighting& lighting, const CarryOn& carryOn);
 
+    /// Detail of the coming frame, in which so many vehicles are seen.
+    Governed chooseDetail(std::size_t seen, const View& view);
     /// Starts or ends governing, as the settings say; calibrates when needed.
     void govern(const CarryOn& calibrating);
 

@@ -16,7 +16,8 @@ DetailLadder ladder() {
     cheap.drawingMs = 5;
     cheap.error = 0.2;
     cheap.pictureError = 0.06;
-    return DetailLadder({fine, cheap});
+    cheap.jump = 0.04;
+    return DetailLadder({fine, cheap}, {12.5, 0.02});
 }
 
 TEST(CalibrationTest, comesBackFromItsFileAsItWas) {
@@ -24,11 +25,13 @@ TEST(CalibrationTest, comesBackFromItsFileAsItWas) {
     const auto is = ladderFromText(ladderToText(was, "this machine"), "this machine");
     ASSERT_TRUE(is);
     ASSERT_EQ(is->rungs().size(), 2u);
+    EXPECT_EQ(is->vehicles(), was.vehicles());
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(is->rungs()[i].detail, was.rungs()[i].detail);
         EXPECT_EQ(is->rungs()[i].ms(), was.rungs()[i].ms());
         EXPECT_EQ(is->rungs()[i].error, was.rungs()[i].error);
         EXPECT_EQ(is->rungs()[i].pictureError, was.rungs()[i].pictureError);
+        EXPECT_EQ(is->rungs()[i].jump, was.rungs()[i].jump);
     }
 }
 
