@@ -13,6 +13,7 @@
 #include "app/frame/MirrorPlan.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/raytrace/RayTracer.h"
+#include "app/render/FrameTimer.h"
 #include "app/render/SceneRenderer.h"
 
 namespace app {
@@ -79,6 +80,9 @@ class Drive {
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
     bool reflectIn(const Lighting& lighting, const CarryOn& carryOn);
 
+    FrameStats drawFrame(const View& view, std::uint32_t framebuffer);
+    /// Of a fixed quality: draws the frame some times and keeps the detail that then meets the budget.
+    void chooseOnce(const View& view, std::uint32_t framebuffer);
     /// Detail of the coming frame, in which so many vehicles are seen.
     Governed chooseDetail(std::size_t seen, const View& view);
     /// Starts or ends governing, as the settings say; calibrates when needed.
@@ -101,6 +105,8 @@ class Drive {
     PreparedReflections prepared_;
     std::unique_ptr<ReflectionEngine> engine_;
     std::optional<Governor> governor_;
+    bool choosing_ = false;
+    FrameTimer timer_;
     std::optional<DetailLadder> ladder_;  ///< of this quality's renderer
     VehicleReflections reflections_;
     FrameScene frame_;

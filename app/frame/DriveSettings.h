@@ -15,7 +15,7 @@ struct DriveSettings {
     double hour = 15;
     double budgetMs = 0;           ///< time of a frame that is to be held (method mem, ours); 0: none
     double error = 0;              ///< mean FLIP on mirrors that is to be met as cheaply as may be; 0: none
-    bool fixedQuality = false;     ///< budget or error choose a detail once, as calibrated, and it stays
+    bool fixedQuality = false;     ///< budget (by the first view) or error choose a detail once, and it stays
     bool mirrors = true;           ///< the city's windows mirror
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most

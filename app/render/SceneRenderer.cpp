@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "app/render/ChangedParts.h"
 #include "app/render/CityPass.h"
 #include "app/render/CubeDestination.h"
 #include "app/render/CubeFaces.h"
@@ -18,6 +17,7 @@
 #include "app/render/GlassPass.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/SignalLamps.h"
+#include "app/render/StandingView.h"
 #include "app/render/VehiclePass.h"
 #include "app/render/VehicleShadows.h"
 #include "app/render/ViewTarget.h"
@@ -109,7 +109,7 @@ struct SceneRenderer::Impl {
           frameUniforms(gl::Buffer::create()),
           emptyArray(gl::VertexArray::create()),
           viewTarget(renderOptions.antialiasing),
-          signalHeads(city.signalHeads) {
+          standing(city.signalHeads) {
         for (std::size_t target = 0; target < 2; ++target)
             skyPrograms[target] =
                 gl::Program::fromFiles({"sky.vert", "sky.frag"}, definesFor(static_cast<PassTarget>(target)));
@@ -202,45 +202,6 @@ struct SceneRenderer::Impl {
         return found;
     }
 
-    bool drewLast(const PassView& pass, glm::ivec2 size) const {
-        return drawnEye == pass.eye && drawnClip == pass.clipFromRelative && drawnSize == size &&
-               drawnIn == lighting;
-    }
-
-    /// Before a view is drawn: what dissolves goes on where the last view is drawn again, and ends elsewhere.
-    void carryOnDissolving(const PassView& pass, glm::ivec2 size) {
-        const int frames = std::exchange(dissolveFrames, 0);
-        if (!drewLast(pass, size))
-            viewTarget.endDissolving();
-        else if (frames > 1) {
-            if (!viewTarget.dissolving()) held = drawn;
-            viewTarget.dissolve(frames);
-        }
-        drawnEye = pass.eye;
-        drawnClip = pass.clipFromRelative;
-        drawnSize = size;
-        drawnIn = lighting;
-    }
-
-    void showWhatMoves(const PassView& pass, glm::ivec2 size) {
-        if (viewTarget.dissolving())
-            findChanges(
-                held, poses, signalColours, signalHeads, lighting.sunDirection,
-                [&](const vehicles::VehiclePose& pose) { return vehiclePass.boundsOf(pose); },
-                // What has moved by less than a pixel stands for as long: its surroundings need not change.
-                [&](const vehicles::VehiclePose& was, const vehicles::VehiclePose& is) {
-                    const double far = glm::distance(is.position, pass.eye);
-                    return glm::distance(was.position, is.position) * pass.pixelsPerRadian > far ||
-                           std::abs(was.heading - is.heading) > 0.02 || was.braking != is.braking;
-                },
-                [&](std::uint64_t name, const city::Aabb& box) {
-                    if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size))
-                        viewTarget.keepLive(name, *pixels);
-                });
-        drawn.poses = poses;
-        drawn.colours = signalColours;
-    }
-
     RenderOptions options;
     Skyline skyline;
     mutable std::optional<SkylineView> lastSkyline;
@@ -256,14 +217,8 @@ struct SceneRenderer::Impl {
     std::array<gl::Program, 2> skyPrograms;
 
     ViewTarget viewTarget;
-    std::vector<city::SignalHead> signalHeads;
-    int dissolveFrames = 0;
-    MovingParts drawn;       ///< with the last view
-    MovingParts held;        ///< with the picture that dissolves
-    glm::dvec3 drawnEye{0};  ///< the last view's
-    glm::mat4 drawnClip{0};
-    glm::ivec2 drawnSize{0};
-    Lighting drawnIn;
+    StandingView standing;
+    std::vector<city::Aabb> frontBounds, liveFronts;  ///< of the glass: all, and those that mirror now
 
     std::unique_ptr<GlassPass> glassPass;
     std::unique_ptr<reflection::MirrorPass> mirrorPass;  ///< while plans need it
@@ -386,6 +341,8 @@ void SceneRenderer::prepare(const FrameScene& scene) {
 
 void SceneRenderer::setGlass(std::span<const city::GlassFront> fronts) {
     impl_->glassPass = fronts.empty() ? nullptr : std::make_unique<GlassPass>(fronts);
+    impl_->frontBounds.clear();
+    for (const city::GlassFront& front : fronts) impl_->frontBounds.push_back(front.bounds);
 }
 
 bool SceneRenderer::hides(const reflection::EyeView& from, const reflection::HalfSpace* glass,
@@ -396,17 +353,18 @@ bool SceneRenderer::hides(const reflection::EyeView& from, const reflection::Hal
 
 void SceneRenderer::setDetail(const DrawingDetail& detail, int dissolveFrames) {
     impl_->detail = detail;
-    impl_->dissolveFrames = dissolveFrames;
+    impl_->standing.dissolveNext(dissolveFrames);
 }
 
 void SceneRenderer::prepareForChanges(glm::ivec2 size) {
     setDrawState();
     impl_->viewTarget.prepareDissolving(size);
-    impl_->drawnSize = {};
+    impl_->standing.forget();
 }
 
 bool SceneRenderer::drewLast(const View& view) const {
-    return impl_->drewLast({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size);
+    return impl_->standing.drewLast({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size,
+                                    impl_->lighting);
 }
 
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
@@ -416,12 +374,22 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     if (view.size.x <= 0 || view.size.y <= 0) return;
     my.updateShadow();
     setDrawState();
-    my.carryOnDissolving({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size);
+    my.standing.begin({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size, my.lighting,
+                      my.viewTarget);
     my.viewTarget.begin(view.size, my.detail.scale);
     const float drawnShare = static_cast<float>(my.viewTarget.drawn().y) / static_cast<float>(view.size.y);
     PassView pass(view.eye, view.clipFromView * view.viewFromWorld, drawnShare * pixelsPerRadian(view));
     pass.skyline = my.skylineFor(pass);
-    my.showWhatMoves(pass, view.size);
+    my.liveFronts.clear();
+    if (planar.plan != nullptr) {
+        const std::vector<bool>& mirrors = my.frontsBelow(*planar.plan, planar.root, nullptr);
+        for (std::size_t i = 0; i < std::min(mirrors.size(), my.frontBounds.size()); ++i)
+            if (mirrors[i]) my.liveFronts.push_back(my.frontBounds[i]);
+    }
+    my.standing.show(
+        pass, my.poses, my.signalColours,
+        [&](const vehicles::VehiclePose& pose) { return my.vehiclePass.boundsOf(pose); }, my.liveFronts,
+        my.viewTarget);
     my.setFrame(pass);
 
     my.chosen.clear();

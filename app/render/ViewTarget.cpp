@@ -103,13 +103,19 @@ void ViewTarget::finish(std::uint32_t framebuffer, double antialiasing) {
         source = smoothTarget_.name();
     }
     finished_ = source;
+    finishedSmooth_ = source != target_.name();
+    const gl::Texture& image = finishedSmooth_ ? smooth_ : colour_;
     if (dissolve_.active()) {
-        replaceParts(source == target_.name() ? colour_ : smooth_);
+        copyParts(image, shownTarget_.name(), dissolve_.advance());
         glBlitNamedFramebuffer(shownTarget_.name(), framebuffer, 0, 0, size_.x, size_.y, 0, 0, size_.x,
                                size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    } else if (stretched) {
+        // Not by a blit, which mixes the border with what lies beyond it.
+        const glm::ivec4 all(0, 0, size_);
+        copyParts(image, framebuffer, {&all, 1});
     } else {
-        glBlitNamedFramebuffer(source, framebuffer, 0, 0, drawn_.x, drawn_.y, 0, 0, size_.x, size_.y,
-                               GL_COLOR_BUFFER_BIT, stretched ? GL_LINEAR : GL_NEAREST);
+        glBlitNamedFramebuffer(source, framebuffer, 0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y,
+                               GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
@@ -139,18 +145,23 @@ void ViewTarget::prepareDissolving(glm::ivec2 size) {
 void ViewTarget::dissolve(int frames) {
     if (finished_ == 0) return;
     allocateShown();
-    // While one dissolves, what is shown is there already.
-    if (!dissolve_.active())
-        glBlitNamedFramebuffer(finished_, shownTarget_.name(), 0, 0, drawn_.x, drawn_.y, 0, 0, size_.x,
-                               size_.y, GL_COLOR_BUFFER_BIT, drawn_ != size_ ? GL_LINEAR : GL_NEAREST);
+    const glm::ivec4 all(0, 0, size_);
+    if (dissolve_.active()) {
+        // What is shown is there already.
+    } else if (drawn_ != size_) {
+        copyParts(finishedSmooth_ ? smooth_ : colour_, shownTarget_.name(), {&all, 1});
+    } else {
+        glBlitNamedFramebuffer(finished_, shownTarget_.name(), 0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y,
+                               GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
     dissolve_.start(size_, frames);
 }
 
-void ViewTarget::replaceParts(const gl::Texture& image) {
-    const std::span<const glm::ivec4> parts = dissolve_.advance();
+void ViewTarget::copyParts(const gl::Texture& image, std::uint32_t framebuffer,
+                           std::span<const glm::ivec4> parts) {
     if (parts.empty()) return;
     rectangles_.replace(parts);
-    glBindFramebuffer(GL_FRAMEBUFFER, shownTarget_.name());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, size_.x, size_.y);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);

@@ -50,7 +50,9 @@ class ViewTarget {
     void mendEdges(int rows);
     /// One sample a pixel, without edges mended.
     void makeSmooth(bool withDepth, const char* purpose);
-    void replaceParts(const reflection::gl::Texture& image);
+    /// Of what was drawn into an image, stretched to the view's size.
+    void copyParts(const reflection::gl::Texture& image, std::uint32_t framebuffer,
+                   std::span<const glm::ivec4> parts);
 
     Antialiasing antialiasing_;
     glm::ivec2 size_{0};
@@ -65,6 +67,7 @@ class ViewTarget {
     reflection::gl::Program fxaa_;
     reflection::gl::VertexArray nothing_;
 
+    bool finishedSmooth_ = false;
     std::uint32_t finished_ = 0;  ///< framebuffer that holds the last picture, before it was stretched
     Dissolve dissolve_;
     reflection::gl::Texture shown_;  ///< while dissolving: what is shown

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+
+#include "reflection/gl/TimerQuery.h"
+
+namespace app {
+
+/// How long frames take. Where OpenGL is software, waits for it before and after, which costs nothing there,
+/// and knows the very frame's time. A graphics card must not be waited for, as it works on one frame while
+/// the next is prepared: there, timer queries tell some frames later what a frame took, and a frame's time is
+/// what the processor or the card took, whichever was more.
+class FrameTimer {
+  public:
+    /// Needs a current context. `waits`: as if OpenGL were software, or not; for tests.
+    FrameTimer();
+    explicit FrameTimer(bool waits);
+
+    void begin();
+    /// Milliseconds. Of a graphics card the last frame that it has finished counts.
+    double end();
+
+  private:
+    bool waits_;
+    std::chrono::steady_clock::time_point start_;
+    struct Query {
+        reflection::gl::TimerQuery query;
+        bool pending = false;
+    };
+    std::array<Query, 4> queries_;  ///< used in turns; frames in flight
+    std::size_t next_ = 0;
+    bool open_ = false;
+    double gpuMs_ = 0;
+};
+
+}  // namespace app

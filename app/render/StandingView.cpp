@@ -1,0 +1,58 @@
+#include "app/render/StandingView.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace app {
+
+namespace {
+
+/// Pixels of motion below which a vehicle is left where it was while a picture dissolves: its surroundings
+/// need not change.
+constexpr double unnoticed = 1;
+constexpr double unnoticedTurn = 0.02;  ///< radians
+/// Names of windows, after those of vehicles and signals.
+constexpr std::uint64_t firstWindow = std::uint64_t{1} << 33;
+
+}  // namespace
+
+void StandingView::begin(const PassView& pass, glm::ivec2 size, const Lighting& lighting,
+                         ViewTarget& target) {
+    const int frames = std::exchange(frames_, 0);
+    if (!drewLast(pass, size, lighting)) {
+        target.endDissolving();
+    } else if (frames > 1) {
+        if (!target.dissolving()) held_ = drawn_;
+        target.dissolve(frames);
+    }
+    eye_ = pass.eye;
+    clip_ = pass.clipFromRelative;
+    size_ = size;
+    lighting_ = lighting;
+}
+
+void StandingView::show(const PassView& pass, std::span<const vehicles::VehiclePose> poses,
+                        std::span<const vehicles::SignalColour> colours,
+                        const std::function<city::Aabb(const vehicles::VehiclePose&)>& boundsOf,
+                        std::span<const city::Aabb> alwaysLive, ViewTarget& target) {
+    if (target.dissolving()) {
+        const auto keepLive = [&](std::uint64_t name, const city::Aabb& box) {
+            if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size_))
+                target.keepLive(name, *pixels);
+        };
+        findChanges(
+            held_, poses, colours, heads_, lighting_.sunDirection, boundsOf,
+            [&](const vehicles::VehiclePose& was, const vehicles::VehiclePose& is) {
+                const double far = glm::distance(is.position, pass.eye);
+                return glm::distance(was.position, is.position) * pass.pixelsPerRadian > unnoticed * far ||
+                       std::abs(was.heading - is.heading) > unnoticedTurn || was.braking != is.braking;
+            },
+            keepLive);
+        for (std::size_t i = 0; i < alwaysLive.size(); ++i) keepLive(firstWindow + i, alwaysLive[i]);
+    }
+    drawn_.poses.assign(poses.begin(), poses.end());
+    drawn_.colours.assign(colours.begin(), colours.end());
+}
+
+}  // namespace app
