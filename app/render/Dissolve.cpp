@@ -7,7 +7,7 @@
 namespace app {
 
 void Dissolve::start(glm::ivec2 size, int frames) {
-    if (!active()) live_.clear();
+    live_.clear();
     size_ = glm::max(size, glm::ivec2(1));
     tiles_ = (size_ + tile - 1) / tile;
     frame_ = 0;

@@ -21,7 +21,7 @@ class Dissolve {
     static constexpr int tile = 16;
 
     /// All of a picture of this size is old, and new after so many frames (1 at least). Anew where one was
-    /// going on already; what moves, goes on.
+    /// going on already: what has moved until now is part of the old picture.
     void start(glm::ivec2 size, int frames);
     void stop() { frame_ = frames_ = 0; }
     bool active() const { return frame_ < frames_; }

@@ -23,7 +23,7 @@ void StandingView::begin(const PassView& pass, glm::ivec2 size, const Lighting& 
     if (!drewLast(pass, size, lighting)) {
         target.endDissolving();
     } else if (frames > 1) {
-        if (!target.dissolving()) held_ = drawn_;
+        held_ = drawn_;
         target.dissolve(frames);
     }
     eye_ = pass.eye;
