@@ -10,6 +10,7 @@
 #include "app/commands/CityTriangles.h"
 #include "app/commands/MirrorMask.h"
 #include "app/commands/PreparedScene.h"
+#include "app/commands/ReflectionSource.h"
 #include "app/commands/Version.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ReflectionEngine.h"
@@ -122,12 +123,15 @@ int benchStills(const Options& options) {
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
     const OffscreenTarget target(options.resolution);
     MirrorMask mirrors;
-    const std::vector<std::pair<std::string, ReflectionMethod>> methods{
-        {"rerender", ReflectionMethod::rerender},
+    RayTracer rays(scene.city, scene.models);
+    // The truth comes first: the others are compared with it.
+    const std::vector<std::pair<std::string, std::optional<ReflectionMethod>>> methods{
+        {"truth", std::nullopt},
         {"none", ReflectionMethod::none},
         {"static", ReflectionMethod::fixed},
         {"box", ReflectionMethod::box},
-        {"mem", ReflectionMethod::mem}};
+        {"mem", ReflectionMethod::mem},
+        {"rerender", ReflectionMethod::rerender}};
     for (const int distance : {3, 10, 40}) {
         FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {});
         if (frame.vehicles.empty()) {
@@ -144,19 +148,20 @@ int benchStills(const Options& options) {
         for (const auto& [methodName, method] : methods) {
             if (interrupted()) return reportBench(options, results, table);
             ReflectionSettings settings;
-            settings.method = method;
+            settings.method = method.value_or(ReflectionMethod::none);
             settings.variant = options.mem;
             settings.quality = options.quality;
             settings.everyFrame = true;
-            ReflectionEngine engine(*prepared.tracer, prepared.maps, scene.models, settings);
+            const std::unique_ptr<ReflectionSource> source =
+                method ? engineSource(scene, prepared, settings, rays) : tracedTruth(rays);
             renderer.prepare(frame);
-            const ReflectionPlan& plan = engine.update(frame, seen, renderer);
-            renderer.drawView(shot.view, {engine.textures(), plan.slots}, target.framebuffer());
+            source->beginFrame(frame, seen, renderer);
+            renderer.drawView(shot.view, source->forView(shot.view, renderer), target.framebuffer());
             const Image8 image = readPixels(target.framebuffer(), target.size());
             const std::string file = name + "_" + std::to_string(distance) + "m_" + methodName + ".png";
             writePng({image.size.x, image.size.y, image.rgba}, options.out / file);
             const std::vector<glm::vec3> pixels = toFloat(image);
-            if (method == ReflectionMethod::rerender) truth = pixels;
+            if (!method) truth = pixels;
             const int w = image.size.x, h = image.size.y;
             const double psnr = reflection::psnr({w, h, pixels}, {w, h, truth}, mask);
             const double flip = reflection::meanError(reflection::flip({w, h, pixels}, {w, h, truth}), mask);
