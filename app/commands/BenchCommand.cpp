@@ -38,7 +38,12 @@ std::vector<Bench> allBenches() {
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},
          benchStills},
         {{"tracer", "rays per second against heightfields, with an exact check; beside Embree", cellOption},
-         benchTracer}};
+         benchTracer},
+        {{"windows",
+          "a street whose windows mirror it and its cars: time, passes and error against depth and number of "
+          "maps; pictures in --out",
+          cellOption | pictureOptions | outOptions},
+         benchWindows}};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "app/commands/Calibration.h"
 #include "app/display/OffscreenTarget.h"
+#include "app/frame/WetRoad.h"
 #include "app/report/Timing.h"
 
 namespace app {
@@ -28,9 +29,9 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       gpuMapBytes_(options.gpuMapBytes()),
       resolution_(options.resolution),
       rendererName_(std::move(renderer)),
-      settings_{options.method,  options.mem,         options.quality,   options.cars.front(),
-                options.hour,    options.budgetMs,    options.error,     options.fixedQuality,
-                options.mirrors, options.mirrorDepth, options.mirrorMaps},
+      settings_{options.method,  options.mem,         options.quality,    options.cars.front(),
+                options.hour,    options.budgetMs,    options.error,      options.fixedQuality,
+                options.mirrors, options.mirrorDepth, options.mirrorMaps, options.weather},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
       lighting_(scene.lighting) {
@@ -51,11 +52,17 @@ void Drive::makeRenderer() {
     renderer_->setGlass(scene_->glass.fronts);
 }
 
-MirrorSettings Drive::mirrorSettings() const {
+MirrorSettings Drive::mirrorSettings(const View& view) const {
     MirrorSettings settings;
     settings.on = settings_.mirrors;
     settings.depth = settings_.mirrorDepth;
     settings.maps = settings_.mirrorMaps;
+    if (settings_.weather == Weather::wet) {
+        // The road in the middle of the picture rather than the one underfoot.
+        const glm::dvec3 ahead(
+            -glm::dvec3(view.viewFromWorld[0][2], view.viewFromWorld[1][2], view.viewFromWorld[2][2]));
+        settings.wetRoad = roadHeightNear(scene_->city.roads, view.eye + 15.0 * ahead);
+    }
     return settings;
 }
 
@@ -205,7 +212,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
     timer_.begin();
     renderer_->prepare(frame_);
     reflections_ = {};
-    mirrorPlan_ = mirrorPlanner_.plan(std::span(&view, 1), mirrorSettings(),
+    mirrorPlan_ = mirrorPlanner_.plan(std::span(&view, 1), mirrorSettings(view),
                                       [this](const auto& from, const auto* glass, const auto& box) {
                                           return renderer_->hides(from, glass, box);
                                       });

@@ -74,7 +74,7 @@ class Drive {
   private:
     RenderOptions renderOptions() const;
     void makeRenderer();
-    MirrorSettings mirrorSettings() const;
+    MirrorSettings mirrorSettings(const View& view) const;
     ReflectionSettings reflectionSettings() const;
     void lendRays();
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.

@@ -22,6 +22,7 @@
 #include "app/frame/Lighting.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
+#include "city/model/GlassFronts.h"
 
 namespace app {
 
@@ -125,6 +126,16 @@ void printCity(const Options& options) {
     hash << std::hex << std::setw(16) << std::setfill('0') << city.contentHash();
     rows.emplace_back("content hash", hash.str());
     rows.emplace_back("reference maps", referenceMapsOf(city, options));
+    const city::GlassCensus glass = city::glassFronts(city).census;
+    rows.emplace_back("windows that mirror", std::to_string(glass.shopFronts) + " shop fronts and " +
+                                                 std::to_string(glass.curtainWalls) + " curtain walls with " +
+                                                 std::to_string(glass.panes) + " panes, " +
+                                                 fixed(glass.area, 0) + " m2, in " +
+                                                 std::to_string(glass.planes) + " planes");
+    rows.emplace_back("windows that do not", std::to_string(glass.tooSmall) + " fronts with less than " +
+                                                 fixed(city::leastGlass, 0) + " m2 of glass, " +
+                                                 std::to_string(glass.painted) +
+                                                 " walls whose small windows stay painted");
     print(city.name.empty() ? options.city : city.name, rows);
     for (const std::string& note : city.notes) std::cout << "  note: " << note << "\n";
     PreparationOptions preparation;

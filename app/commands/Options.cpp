@@ -177,6 +177,8 @@ void addMirrors(CLI::App& parser, Options& o) {
             "windows of shops and curtain walls mirror the street and each other: on (default) or off")
         ->type_name("on|off")
         ->check(CLI::IsMember({"on", "off"}));
+    addNamed(parser, "--weather", o.weather, weatherNames,
+             "wet: streets mirror as after rain, with puddles, where --mirrors are on (default dry)");
     parser.add_option("--mirror-depth", o.mirrorDepth, "mirrors in a row, 0 to 8")
         ->type_name("N")
         ->capture_default_str()

@@ -12,6 +12,7 @@
 
 #include "app/frame/CameraRig.h"
 #include "app/frame/ReflectionMethod.h"
+#include "app/frame/Weather.h"
 
 namespace app {
 
@@ -50,6 +51,7 @@ struct Options {
     bool mirrors = true;           ///< windows mirror
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections a frame at most
+    Weather weather = Weather::dry;
     std::uint32_t samples = 64;    ///< mirror rays a pixel
     std::uint32_t bounces = 3;     ///< mirrors in a row
     bool quiet = false;
@@ -87,7 +89,7 @@ enum OptionGroup : unsigned {
     rayOptions = 1u << 18,        ///< --samples --bounces
     shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
 
-    mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps
+    mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps --weather
     budgetOption = 1u << 20,   ///< --budget
     errorOptions = 1u << 21,   ///< --error --fixed-quality
     saveOption = 1u << 23,     ///< --save

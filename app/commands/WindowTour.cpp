@@ -198,6 +198,7 @@ PanelNews WindowTour::news() {
     news.frameMs = frameMs_;
     news.reflections = stats_.reflections;
     news.drawn = stats_.drawn;
+    news.mirrors = stats_.mirrors;
     news.vehicles = drive_.traffic().size();
     if (const Governor* governor = drive_.governor()) {
         news.ladder = governor->ladder().rungs();

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "app/frame/ReflectionMethod.h"
+#include "app/frame/Weather.h"
 
 namespace app {
 
@@ -19,6 +20,7 @@ struct DriveSettings {
     bool mirrors = true;           ///< the city's windows mirror
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most
+    Weather weather = Weather::dry;  ///< wet streets need `mirrors`
 
     /// Whether details follow from a budget or an error instead of `quality`.
     bool governed() const {

@@ -1,6 +1,7 @@
 #include "app/frame/MirrorPlan.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <glm/common.hpp>
@@ -101,7 +102,20 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
         counters.milliseconds =
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     };
-    if (direct.empty()) {
+    std::optional<reflection::MirrorPlane> road;
+    if (settings.wetRoad && std::isfinite(*settings.wetRoad)) {
+        const glm::dvec3 eye = views.front().eye;
+        const double r = settings.reach, z = *settings.wetRoad;
+        const std::array<glm::dvec3, 4> square{glm::dvec3(eye.x - r, eye.y - r, z),
+                                               {eye.x + r, eye.y - r, z},
+                                               {eye.x + r, eye.y + r, z},
+                                               {eye.x - r, eye.y + r, z}};
+        // Seen at a low angle water mirrors as much as a third: what is planned for.
+        reflection::MirrorResult made =
+            reflection::MirrorPlane::make(square, {glm::vec3(0.3f), wetRoughness});
+        if (made.status == reflection::MirrorStatus::ok) road = std::move(made.mirror);
+    }
+    if (direct.empty() && !road) {
         finish();
         return plan;
     }
@@ -117,6 +131,10 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     };
     give(direct);
     give(behindOthers);
+    if (road) {
+        mirrors.push_back({MirrorPlan::road, *road});
+        plan.fronts.push_back(MirrorPlan::road);
+    }
     reflection::groupCoplanar(mirrors);
 
     reflection::ReflectionScene scene;
@@ -124,7 +142,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     if (hidden)
         scene.hidden = [&](const reflection::EyeView& from, const reflection::HalfSpace* glass,
                            const reflection::Mirror& mirror) {
-            return hidden(from, glass, fronts_[mirror.id].bounds);
+            return mirror.id != MirrorPlan::road && hidden(from, glass, fronts_[mirror.id].bounds);
         };
     reflection::TreeSettings tree;
     tree.depth = settings.depth;
@@ -138,6 +156,10 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     for (const std::uint32_t m : plan.tree.mirrors) shown[m] = true;
     for (std::size_t m = 0; m < mirrors.size(); ++m) {
         if (!shown[m]) continue;
+        if (mirrors[m].id == MirrorPlan::road) {
+            counters.road = true;
+            continue;
+        }
         ++counters.shown;
         counters.windows += fronts_[mirrors[m].id].panes;
     }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct MirrorSettings {
     std::uint32_t mostFronts = 48;  ///< given to the tree: the most visible of those that are near
     double levelScale = 0.5;        ///< texels a pixel for each further mirror in a row
     reflection::Economies economies;
+    /// World z of the road after rain, see roadHeightNear: one level mirror for all wet ground. Nothing: dry.
+    std::optional<double> wetRoad = std::nullopt;
 
     bool operator==(const MirrorSettings& b) const {
         return on == b.on && depth == b.depth && maps == b.maps;
@@ -37,6 +40,7 @@ struct MirrorCounters {
     std::uint32_t inView = 0;   ///< of these, seen from the front and large enough, before occlusion
     std::uint32_t shown = 0;    ///< fronts that some map serves
     std::uint32_t windows = 0;  ///< their panes
+    bool road = false;          ///< the wet road mirrors
     std::uint32_t passes = 0;   ///< reflections drawn
     std::uint32_t levels = 0;   ///< maps kept: one for each mirror in a row
     std::uint64_t texels = 0;   ///< drawn
@@ -44,8 +48,14 @@ struct MirrorCounters {
     double milliseconds = 0;  ///< of planning
 };
 
+/// Roughness of the film of water on asphalt: its microfacets spread what it mirrors by 5 degrees.
+inline constexpr float wetRoughness = 0.25f;
+
 /// What the flat mirrors of one frame need: plain data.
 struct MirrorPlan {
+    /// In `fronts`: the wet road.
+    static constexpr std::uint32_t road = 0xffffffffu;
+
     reflection::ReflectionTree tree;    ///< roots: the frame's views
     std::vector<std::uint32_t> fronts;  ///< of each mirror of the tree: index of its GlassFront
     MirrorCounters counters;

@@ -125,6 +125,7 @@ struct Panel::Impl {
 
     void drawSettings(const PanelNews& news, PanelChoices& choices);
     void drawBudget(const PanelNews& news, DriveSettings& settings);
+    void drawMirrors(const PanelNews& news, DriveSettings& settings);
     void drawCounters(const PanelNews& news);
 
     float budget = -1;
@@ -207,6 +208,37 @@ void Panel::Impl::drawBudget(const PanelNews& news, DriveSettings& settings) {
     ImGui::TreePop();
 }
 
+void Panel::Impl::drawMirrors(const PanelNews& news, DriveSettings& settings) {
+    if (!ImGui::CollapsingHeader("windows")) return;
+    ImGui::Checkbox("mirror the street", &settings.mirrors);
+    if (!settings.mirrors) return;
+    combo("weather", weatherNames, settings.weather);
+    ImGui::SliderInt("in a row", &settings.mirrorDepth, 0, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
+    int maps = static_cast<int>(settings.mirrorMaps);
+    ImGui::SliderInt("maps a frame", &maps, 0, 64, "%d", ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemEdited()) settings.mirrorMaps = static_cast<std::uint32_t>(maps);
+    if (!ImGui::BeginTable("windows", 2, ImGuiTableFlags_SizingStretchProp)) return;
+    const MirrorCounters& m = news.mirrors;
+    row("fronts in the city", "%.0f", m.inCity);
+    row("  near", "%.0f", m.inReach);
+    row("  in view", "%.0f", m.inView);
+    row("  mirrored", "%.0f", m.shown);
+    row("panes", "%.0f", m.windows);
+    row("reflections drawn", "%.0f", m.passes);
+    row("  saved by sharing", "%.0f", m.shared);
+    row("  hidden", "%.0f", m.occluded);
+    row("  seen from behind", "%.0f", m.backFacing);
+    row("  out of view", "%.0f", m.offScreen);
+    row("  too dim", "%.0f", m.belowCutOff);
+    row("  beyond the cap", "%.0f", m.overCap);
+    row("maps kept", "%.0f", m.levels);
+    row("  texels", "%.0f", static_cast<double>(m.texels));
+    row("  MiB", "%.1f", static_cast<double>(news.drawn.mirrorTextureBytes) / (1024.0 * 1024.0));
+    row("triangles in them", "%.0f", static_cast<double>(news.drawn.mirrorTriangles));
+    row("planning, ms", "%.2f", m.milliseconds);
+    ImGui::EndTable();
+}
+
 void Panel::Impl::drawCounters(const PanelNews& news) {
     if (!ImGui::BeginTable("counters", 2, ImGuiTableFlags_SizingStretchProp)) return;
     constexpr double mebi = 1024.0 * 1024.0;
@@ -261,6 +293,7 @@ void Panel::draw(const PanelNews& news, PanelChoices& choices) {
         ImGui::Begin("mirrorstreet", &choices.showPanel);
         drawFrameTimes(news.frameMs);
         impl_->drawSettings(news, choices);
+        impl_->drawMirrors(news, choices.settings);
         ImGui::Separator();
         impl_->drawCounters(news);
         ImGui::TextDisabled("%s", news.renderer.c_str());

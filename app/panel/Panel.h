@@ -37,6 +37,7 @@ struct PanelNews {
     std::span<const float> frameMs;  ///< oldest first
     ReflectionCounters reflections;
     RenderCounters drawn;
+    MirrorCounters mirrors;
     std::size_t vehicles = 0;
     std::span<const Rung> ladder;  ///< what a budget is held with; empty: there is none
     double position = 0;           ///< on it

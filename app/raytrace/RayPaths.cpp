@@ -38,6 +38,22 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
     const float footprint = ray.width + ray.spread * hit.t;
     if (placed.kind == PlacedMesh::Kind::city) {
         const float cosine = glm::dot(triangle.facing(), ray.direction);
+        const auto pane = scene.glass ? shading.glass(placed, triangle, weights) : std::nullopt;
+        if (pane && cosine < 0) {
+            const GlassShares shares = glassShares(pane->glass, -cosine);
+            const glm::vec3 reflected = mirrorDirection(pane->normal, -ray.direction);
+            sums[ray.sum] += ray.weight * shares.through *
+                             shading.city(placed, triangle, weights,
+                                          shading.levelOf(triangle, footprint, cosine), roomSky, roomSun);
+            if (!mirrorAgain) {
+                sums[ray.sum] +=
+                    ray.weight * shares.mirrored * meanSurroundings(shading.lighting(), reflected);
+                return;
+            }
+            next_.push_back({triangle.at(weights) + pane->normal * city::paneOffset, reflected, footprint,
+                             ray.spread, ray.weight * shares.mirrored, ray.sum});
+            return;
+        }
         sums[ray.sum] += ray.weight * shading.city(placed, triangle, weights,
                                                    shading.levelOf(triangle, footprint, cosine));
         return;

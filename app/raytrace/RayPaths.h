@@ -36,6 +36,7 @@ class RayPaths {
         const RayShading* shading = nullptr;
         const RayScene* scene = nullptr;
         const FrameScene* frame = nullptr;
+        bool glass = false;  ///< the city's panes are mirrors too; otherwise they are as they are painted
     };
 
     std::vector<PathRay> rays;  ///< to be filled; empty afterwards

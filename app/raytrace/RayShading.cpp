@@ -69,7 +69,7 @@ PatternSampler::Level RayShading::levelOf(const MetTriangle& triangle, float foo
 }
 
 glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
-                           PatternSampler::Level level) const {
+                           PatternSampler::Level level, float skyShare, float sunShare) const {
     glm::vec3 normal[3], shaded[3], sunlit[3];
     bool sunny = false;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -84,10 +84,11 @@ glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle
         }
         const glm::vec3 albedo = tint * inversePi;
         const float cosine = std::max(glm::dot(normal[k], lighting_.sunDirection), 0.0f);
-        shaded[k] =
-            albedo * glm::mix(lighting_.groundIrradiance, lighting_.skyIrradiance, 0.5f + 0.5f * normal[k].z);
+        shaded[k] = albedo *
+                    glm::mix(lighting_.groundIrradiance, lighting_.skyIrradiance, 0.5f + 0.5f * normal[k].z) *
+                    skyShare;
         if (lighting_.lampsLit) shaded[k] += emission;
-        sunlit[k] = albedo * lighting_.sunIrradiance * cosine;
+        sunlit[k] = albedo * lighting_.sunIrradiance * (cosine * sunShare);
         sunny = sunny || cosine > 0;
     }
     const std::uint32_t material = triangle.corner[2]->material;  // flat: of the provoking corner
@@ -102,6 +103,23 @@ glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle
         light += blend(sunlit[0], sunlit[1], sunlit[2], weights) *
                  sunAt(triangle.at(weights), blend(normal[0], normal[1], normal[2], weights));
     return root * root * light;
+}
+
+std::optional<GlassPoint> RayShading::glass(const PlacedMesh& placed, const MetTriangle& triangle,
+                                            const glm::vec2& weights) const {
+    if (placed.kind != PlacedMesh::Kind::city) return std::nullopt;
+    const std::uint32_t material = triangle.corner[2]->material;
+    if (material >= city_->materials.size()) return std::nullopt;
+    const city::Pattern pattern = city_->materials[material].pattern;
+    const auto panes = city::panesOf(pattern);
+    if (panes.empty()) return std::nullopt;
+    const glm::vec2 texcoord = blend(triangle.corner[0]->texcoord, triangle.corner[1]->texcoord,
+                                     triangle.corner[2]->texcoord, weights);
+    const glm::vec2 at = texcoord - glm::floor(texcoord);
+    for (const city::PaneOfPattern& pane : panes)
+        if (at.x >= pane.low.x && at.x <= pane.high.x && at.y >= pane.low.y && at.y <= pane.high.y)
+            return GlassPoint{triangle.facing(), city::glassOf(pattern)};
+    return std::nullopt;
 }
 
 void RayShading::cornerNormals(const PlacedMesh& placed, const MetTriangle& triangle,

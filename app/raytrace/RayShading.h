@@ -4,7 +4,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
+#include "app/frame/GlassShading.h"
 #include "app/frame/SunMap.h"
 #include "app/frame/VehicleShading.h"
 #include "app/raytrace/RayScene.h"
@@ -44,6 +46,12 @@ struct VehiclePoint {
     glm::vec3 normal{0};  ///< unit, interpolated
 };
 
+/// A point of the city's glass.
+struct GlassPoint {
+    glm::vec3 normal{0};  ///< unit, into the street
+    city::GlassSurface glass;
+};
+
 /// Twins of city.vert, city.frag, vehicle.vert and vehicle.frag.
 class RayShading {
   public:
@@ -60,8 +68,13 @@ class RayShading {
     MetTriangle triangle(const PlacedMesh& placed, const reflection::TracedHit& hit) const;
 
     /// Radiance of a point of the city. `level` from the footprint of the pixel or ray.
+    /// `skyShare`, `sunShare`: of the light that falls on it.
     glm::vec3 city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
-                   PatternSampler::Level level) const;
+                   PatternSampler::Level level, float skyShare = 1, float sunShare = 1) const;
+    /// Whether a point of the city lies on a pane that mirrors, told by its wall's material and texture
+    /// coordinates: see city::panesOf.
+    std::optional<GlassPoint> glass(const PlacedMesh& placed, const MetTriangle& triangle,
+                                    const glm::vec2& weights) const;
     /// Texture level for a ray that is `footprint` metres wide and meets the triangle at this cosine.
     PatternSampler::Level levelOf(const MetTriangle& triangle, float footprint, float cosine) const;
 

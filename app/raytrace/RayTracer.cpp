@@ -83,14 +83,9 @@ struct RayTracer::Impl {
         scene.commit();
         return scene;
     }
-    RayPaths::Scene pathsIn(const RayScene& scene) const { return {&shading, &scene, &frame}; }
-
-    void shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
-                    const reflection::TracedRay& ray, const reflection::TracedHit& hit, const glm::ivec2& at,
-                    bool plain, TracedPicture& picture, std::size_t index,
-                    std::vector<MirrorPixel>& mirrors) const;
-    PatternSampler::Level quadLevel(const ViewRays& rays, const MetTriangle& triangle,
-                                    const glm::ivec2& pixel) const;
+    RayPaths::Scene pathsIn(const RayScene& scene, bool glass = false) const {
+        return {&shading, &scene, &frame, glass};
+    }
 
     struct Scratch {
         std::vector<reflection::TracedRay> rays;
@@ -101,6 +96,13 @@ struct RayTracer::Impl {
         MirrorPixels gatherer;
         RayPaths paths;
     };
+
+    void shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
+                    const reflection::TracedRay& ray, const reflection::TracedHit& hit, const glm::ivec2& at,
+                    const TraceOptions& options, TracedPicture& picture, std::size_t index,
+                    Scratch& out) const;
+    PatternSampler::Level quadLevel(const ViewRays& rays, const MetTriangle& triangle,
+                                    const glm::ivec2& pixel) const;
 
     const city::CityModel& city;
     RayMeshes meshes;
@@ -159,8 +161,8 @@ PatternSampler::Level RayTracer::Impl::quadLevel(const ViewRays& rays, const Met
 
 void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
                                  const reflection::TracedRay& ray, const reflection::TracedHit& hit,
-                                 const glm::ivec2& at, bool plain, TracedPicture& picture, std::size_t index,
-                                 std::vector<MirrorPixel>& mirrors) const {
+                                 const glm::ivec2& at, const TraceOptions& options, TracedPicture& picture,
+                                 std::size_t index, Scratch& out) const {
     picture.displayFactor[index] = shadows.factor(ray.direction, hit.found() ? hit.t : infinity);
     picture.distance[index] = hit.t;
     if (!hit.found()) {
@@ -179,6 +181,20 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
             return;
         case PlacedMesh::Kind::city:
             picture.kind[index] = SeenKind::city;
+            if (const auto pane =
+                    options.windows > 0 ? shading.glass(placed, triangle, weights) : std::nullopt) {
+                const GlassShares shares = glassShares(pane->glass, -glm::dot(pane->normal, ray.direction));
+                picture.kind[index] = SeenKind::glass;
+                picture.fresnel[index] = shares.mirrored;
+                picture.radiance[index] =
+                    shares.through *
+                    shading.city(placed, triangle, weights, quadLevel(rays, triangle, at), roomSky, roomSun);
+                out.paths.rays.push_back({triangle.at(weights) + pane->normal * city::paneOffset,
+                                          mirrorDirection(pane->normal, -ray.direction), ray.spread * hit.t,
+                                          ray.spread, glm::vec3(shares.mirrored),
+                                          static_cast<std::uint32_t>(index)});
+                return;
+            }
             picture.radiance[index] = shading.city(placed, triangle, weights, quadLevel(rays, triangle, at));
             return;
         case PlacedMesh::Kind::vehicle:
@@ -191,13 +207,13 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
     picture.vehicle[index] = pose.id;
     picture.normal[index] = point.normal;
     picture.radiance[index] = point.coat.diffuse * (1 - fresnel);
-    if (plain) {
+    if (options.plain) {
         picture.radiance[index] +=
             plainSurroundings(frame.lighting, point.coat, mirrorDirection(point.normal, -ray.direction)) *
             fresnel;
     } else {
         picture.fresnel[index] = fresnel;
-        mirrors.push_back({at, &placed, triangle, weights});
+        out.mirrors.push_back({at, &placed, triangle, weights});
     }
 }
 
@@ -234,7 +250,7 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
     seen.addVehicles(my.frame, all, detail);
     seen.commit();
     std::optional<RayScene> mirrored;
-    if (!options.plain) mirrored.emplace(my.mirrorScene(detail, 0xffffffffu));
+    if (!options.plain || options.windows > 0) mirrored.emplace(my.mirrorScene(detail, 0xffffffffu));
     const ViewRays rays(view);
     const GroundShadows shadows(my.frame, my.meshes, my.shading, view);
 
@@ -252,12 +268,16 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
         const std::size_t row = static_cast<std::size_t>(y - first) * width;
         for (int x = 0; x < view.size.x; ++x) {
             const auto i = static_cast<std::size_t>(x);
-            my.shadePixel(rays, shadows, seen, scratch.rays[i], scratch.hits[i], {x, y}, options.plain,
-                          picture, row + i, scratch.mirrors);
+            my.shadePixel(rays, shadows, seen, scratch.rays[i], scratch.hits[i], {x, y}, options, picture,
+                          row + i, scratch);
         }
+        // Each pixel's ray adds to its own sum.
+        if (!scratch.paths.rays.empty())
+            scratch.paths.follow(my.pathsIn(*mirrored, true), options.windows - 1, picture.radiance);
         if (scratch.mirrors.empty()) return;
         scratch.light.resize(scratch.mirrors.size());
-        scratch.gatherer.gather(my.pathsIn(*mirrored), rays, scratch.mirrors, options, scratch.light);
+        scratch.gatherer.gather(my.pathsIn(*mirrored, options.windows > 0), rays, scratch.mirrors, options,
+                                scratch.light);
         for (std::size_t i = 0; i < scratch.mirrors.size(); ++i) {
             const std::size_t index = row + static_cast<std::size_t>(scratch.mirrors[i].pixel.x);
             picture.mirrored[index] = scratch.light[i];

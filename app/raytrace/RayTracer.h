@@ -28,10 +28,12 @@ struct TraceOptions {
     int bounces = 1;
     bool plain = false;  ///< plain paint: the picture of the method `none`; samples and bounces do not matter
     std::uint64_t seed = 1;
+    /// Mirrors in a row that begin with the city's glass: 0 leaves panes as they are painted. One ray a pixel.
+    int windows = 0;
 };
 
 /// What a pixel or texel shows.
-enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle };
+enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle, glass };
 
 /// A ray traced picture, one sample a pixel for what is seen directly (as the rasteriser without
 /// antialiasing), top row first.

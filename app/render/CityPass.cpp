@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
+#include "app/frame/MirrorPlan.h"
+#include "reflection/planar/Gloss.h"
+
 namespace app {
 
 namespace {
@@ -136,6 +139,47 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
             first = last;
         }
     }
+    return counts;
+}
+
+CityPass::Counts CityPass::drawWet(const PassView& view, PassTarget target, const Wet& wet) {
+    Counts counts;
+    reflection::gl::Program& program = wetPrograms_[static_cast<std::size_t>(target)];
+    if (!program) {
+        std::vector<std::string> defines{"WET"};
+        if (target == PassTarget::cube) defines.emplace_back("CUBE");
+        program = reflection::gl::Program::fromFiles({"city.vert", "wet_ground.frag"}, defines);
+    }
+    program.set("planeHeight", static_cast<float>(wet.height - view.eye.z));
+    program.set("uvPerRadian", wet.uvPerRadian);
+    program.set("filmAngle", static_cast<float>(reflection::glossAngle(wetRoughness)));
+    program.set("blurLevels", wet.map.blurred != 0 ? wet.map.blurLevels : 0);
+    program.set("uvFromFragment", wet.map.uvFromFragment);
+    program.set("uvLimits", wet.map.uvLimits);
+    program.set("blurredScale", wet.map.blurredScale);
+    glBindTextureUnit(8, wet.map.colour);
+    glBindTextureUnit(9, wet.map.blurred != 0 ? wet.map.blurred : wet.map.colour);
+    materials_.bind();
+    Batch& batch = batches_[static_cast<std::size_t>(Coverage::solid)];
+    batch.clear();
+    for (const CityGeometry::Chunk& chunk : geometry_.chunks()) {
+        const MeshRange& range = chunk.ranges[static_cast<std::size_t>(Coverage::solid)];
+        if (chunk.kind != city::ChunkKind::ground || range.empty() || !view.sees(chunk.bounds)) continue;
+        batch.add(range);
+        counts.triangles += range.indexCount / 3;
+        ++counts.chunksDrawn;
+    }
+    if (batch.counts.empty()) return counts;
+    geometry_.chunkArray().bind();
+    program.use();
+    glEnable(GL_CULL_FACE);
+    // The same triangles again: a rounding must not let the dry ground show through.
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(0, 4);
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, batch.counts.data(), GL_UNSIGNED_INT, batch.offsets.data(),
+                                  static_cast<GLsizei>(batch.counts.size()), batch.baseVertices.data());
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    counts.drawCalls = 1;
     return counts;
 }
 

@@ -7,6 +7,7 @@
 #include "app/render/CityGeometry.h"
 #include "app/render/CityMaterials.h"
 #include "app/render/PassTarget.h"
+#include "reflection/gl/MirrorScene.h"
 #include "reflection/gl/Program.h"
 
 namespace app {
@@ -27,6 +28,15 @@ class CityPass {
     Counts draw(const PassView& view, PassTarget target, float tolerance);
 
     const CityGeometry& geometry() const { return geometry_; }
+    /// What the wet road mirrors, and where it lies.
+    struct Wet {
+        reflection::MirrorMap map;
+        glm::vec2 uvPerRadian{1};  ///< texture coordinates of the map, near the middle of its image
+        double height = 0;         ///< world z of the mirror
+    };
+    /// Draws the ground that a view sees over itself as it looks after rain, depth as it was.
+    Counts drawWet(const PassView& view, PassTarget target, const Wet& wet);
+
     /// Patterns to texture unit 0, table to uniform buffer 1.
     void bindMaterials() const { materials_.bind(); }
 
@@ -45,6 +55,7 @@ class CityPass {
     };
     void useFor(Coverage coverage, bool instanced, PassTarget target);
 
+    std::array<reflection::gl::Program, 2> wetPrograms_;  ///< [target]; made when first needed
     CityGeometry geometry_;
     CityMaterials materials_;
     std::array<std::array<std::array<reflection::gl::Program, 2>, 2>, passTargetCount>

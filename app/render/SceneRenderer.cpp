@@ -188,6 +188,14 @@ struct SceneRenderer::Impl {
         return mapped;
     }
 
+    /// Glass that no map serves in an image: a root's, or a node's.
+    GlassPass::Counts drawPlainGlass(const PassView& pass, PassTarget target, const PlanarReflections& planar,
+                                     const reflection::ReflectionNode* node) {
+        if (!glassPass) return {};
+        glassPass->seenBy(pass, glassReach, frontsBelow(*planar.plan, planar.root, node), fronts);
+        return glassPass->draw(target, fronts, nullptr);
+    }
+
     std::vector<VisibleVehicle> visible(const PassView& pass) const {
         std::vector<VisibleVehicle> found;
         for (std::uint32_t i = 0; i < poses.size(); ++i) {
@@ -257,10 +265,10 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
             pass, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
             static_cast<float>(my_.detail.vehicleTolerance));
         const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
-        my_.glassPass->seenBy(pass, glassReach, my_.frontsBelow(plan_, root_, &node), my_.fronts);
-        const GlassPass::Counts glass = my_.glassPass->draw(PassTarget::cube, my_.fronts, nullptr);
+        const GlassPass::Counts glass = my_.drawPlainGlass(pass, PassTarget::cube, {&plan_, root_}, &node);
         my_.signalLamps.draw(pass, PassTarget::cube, my_.signalColours);
-        if (my_.options.shadows)
+        // On a wet road shadows lie over what it mirrors: they follow it.
+        if (my_.options.shadows && !roadBelow(node))
             my_.vehicleShadows.draw(pass, my_.vehiclePass.geometry(), my_.poses, my_.chosen, 8,
                                     PassTarget::cube);
         // The near plane that leans does not bear being turned round: the sky has none.
@@ -275,15 +283,47 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         setDrawState(target);
         const PassView pass = parent != nullptr ? passOf(*parent, 1) : view_;
         my_.setFrame(pass);
+        if (isRoad(node)) {
+            drawRoad(node, map, parent, pass);
+            return;
+        }
         my_.cityPass.bindMaterials();
         my_.fronts.clear();
         for (const std::uint32_t m : plan_.tree.mirrorsOf(node)) my_.fronts.push_back(plan_.fronts[m]);
-        my_.glassPass->draw(parent != nullptr ? PassTarget::cube : PassTarget::view, my_.fronts, &map);
+        if (my_.glassPass)
+            my_.glassPass->draw(parent != nullptr ? PassTarget::cube : PassTarget::view, my_.fronts, &map);
     }
 
     std::uint64_t triangles = 0;
 
   private:
+    bool isRoad(const reflection::ReflectionNode& node) const {
+        const auto mirrors = plan_.tree.mirrorsOf(node);
+        return !mirrors.empty() && plan_.fronts[mirrors.front()] == MirrorPlan::road;
+    }
+    bool roadBelow(const reflection::ReflectionNode& node) const {
+        return std::ranges::any_of(plan_.tree.nodes, [&](const reflection::ReflectionNode& n) {
+            return n.parent != reflection::ReflectionNode::none && &plan_.tree.nodes[n.parent] == &node &&
+                   isRoad(n);
+        });
+    }
+    void drawRoad(const reflection::ReflectionNode& node, const reflection::MirrorMap& map,
+                  const reflection::ReflectionNode* parent, const PassView& pass) {
+        CityPass::Wet wet;
+        wet.map = map;
+        const glm::vec2 used = glm::vec2(node.resolution) / map.texels;
+        wet.uvPerRadian =
+            0.5f * used * glm::vec2(glm::abs(node.clipFromView[0][0]), glm::abs(node.clipFromView[1][1]));
+        // The glass's distance from the eye behind it is that of the eye before it.
+        wet.height = node.view.eye.z - node.glass.w / node.glass.z;
+        const PassTarget target = parent != nullptr ? PassTarget::cube : PassTarget::view;
+        triangles += my_.cityPass.drawWet(pass, target, wet).triangles;
+        if (parent == nullptr || !my_.options.shadows) return;
+        my_.chosen.clear();
+        for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
+        my_.vehicleShadows.draw(pass, my_.vehiclePass.geometry(), my_.poses, my_.chosen, 8, target);
+    }
+
     Impl& my_;
     const MirrorPlan& plan_;
     std::uint32_t root_;
@@ -293,12 +333,11 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
 
 void SceneRenderer::Impl::drawGlass(const PassView& pass, const VehicleReflections& reflections,
                                     const PlanarReflections& planar) {
-    if (!glassPass || planar.plan == nullptr) {
+    if (planar.plan == nullptr) {
         mirrorPass.reset();
         return;
     }
-    glassPass->seenBy(pass, glassReach, frontsBelow(*planar.plan, planar.root, nullptr), fronts);
-    const GlassPass::Counts plain = glassPass->draw(PassTarget::view, fronts, nullptr);
+    const GlassPass::Counts plain = drawPlainGlass(pass, PassTarget::view, planar, nullptr);
     counters.drawCalls += plain.drawCalls;
     counters.triangles += plain.triangles;
     if (planar.plan->empty()) {
@@ -465,7 +504,7 @@ std::vector<SceneRenderer::VisibleVehicle> SceneRenderer::visibleVehicles(
     const View& view, const PlanarReflections& planar) const {
     const Impl& my = *impl_;
     std::vector<VisibleVehicle> found = visibleVehicles(view);
-    if (planar.plan == nullptr || !my.glassPass) return found;
+    if (planar.plan == nullptr) return found;
     constexpr std::uint32_t unseen = 0xffffffffu;
     std::vector<std::uint32_t> place(my.poses.size(), unseen);
     for (std::uint32_t i = 0; i < found.size(); ++i) place[found[i].index] = i;

@@ -22,8 +22,11 @@ layout(location = 5) in vec4 worldFromPrototype0;  // rows
 layout(location = 6) in vec4 worldFromPrototype1;
 layout(location = 7) in vec4 worldFromPrototype2;
 #endif
-#ifdef CUBE
+#if defined CUBE || defined WET
 layout(location = 5) out vec3 relativeOut;
+#endif
+#ifdef WET
+layout(location = 6) out vec3 normalOut;
 #endif
 
 layout(location = 0) out vec2 texcoordOut;
@@ -46,11 +49,14 @@ void main() {
 #endif
     vec3 relative = relativeFromWorld(world);
     gl_Position = frame.clipFromRelative * vec4(relative, 1.0);
-#ifdef CUBE
+#if defined CUBE || defined WET
     relativeOut = relative;
+#endif
+#ifdef WET
+    normalOut = n;
+#endif
 #ifdef LAYERED
     gl_Layer = int(frame.eyeLow.w);
-#endif
 #endif
     MaterialEntry m = materials[material];
     texcoordOut = texcoord;

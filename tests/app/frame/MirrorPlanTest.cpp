@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "app/frame/WetRoad.h"
+
 namespace {
 
 using app::MirrorPlan;
@@ -158,6 +160,45 @@ TEST(MirrorPlan, WhatBuildingsHideIsLeftOut) {
     };
     EXPECT_EQ(MirrorPlanner(fronts).plan(std::span(&view, 1), {}, none).counters.passes, 2u);
     EXPECT_EQ(throughGlass, 1);
+}
+
+TEST(MirrorPlan, WetRoadIsOneLevelMirrorBelowTheEye) {
+    const app::View view = viewFrom({0, 0, 2}, {30, 0, 0});
+    MirrorSettings settings;
+    settings.wetRoad = 0.25;
+    const MirrorPlan plan = planOf({}, view, settings);
+    ASSERT_EQ(plan.counters.passes, 1u);
+    EXPECT_TRUE(plan.counters.road);
+    EXPECT_EQ(plan.counters.shown, 0u);
+    ASSERT_EQ(plan.fronts.size(), 1u);
+    EXPECT_EQ(plan.fronts[0], MirrorPlan::road);
+    EXPECT_NEAR(plan.tree.nodes[0].view.eye.z, -1.5, 1e-9);
+    EXPECT_EQ(plan.tree.nodes[0].roughness, app::wetRoughness);
+    // From under the road, or far above all of it, there is nothing; nor where its height is unknown.
+    EXPECT_TRUE(planOf({}, viewFrom({0, 0, 0.2}, {30, 0, 0}), settings).empty());
+    EXPECT_TRUE(planOf({}, viewFrom({0, 0, 2}, {0, 0, 50}), settings).empty());
+    settings.wetRoad = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(planOf({}, view, settings).empty());
+    // Windows are mirrored beside it, and in it.
+    settings.wetRoad = 0;
+    const MirrorPlan both = planOf(street(4), viewFrom({-10, 0, 2}, {20, 0, 1}), settings);
+    EXPECT_TRUE(both.counters.road);
+    EXPECT_GT(both.counters.shown, 2u);
+    EXPECT_GT(both.counters.passes, 3u);
+}
+
+TEST(WetRoad, HeightIsThatOfTheNearestLane) {
+    city::RoadNetwork roads;
+    EXPECT_FALSE(app::roadHeightNear(roads, {0, 0, 0}).has_value());
+    city::Lane level, hill, tram;
+    level.centreLine = {{0, 0, 1}, {100, 0, 1}};
+    hill.centreLine = {{0, 20, 0}, {100, 20, 10}};
+    tram.kind = city::LaneKind::tram;
+    tram.centreLine = {{0, 3, 7}, {100, 3, 7}};
+    roads.lanes = {level, hill, tram};
+    EXPECT_DOUBLE_EQ(app::roadHeightNear(roads, {50, 4, 30}).value_or(-1), 1);
+    EXPECT_NEAR(app::roadHeightNear(roads, {50, 19, 0}).value_or(-1), 5, 1e-6);
+    EXPECT_NEAR(app::roadHeightNear(roads, {500, 40, 0}).value_or(-1), 10, 1e-6);
 }
 
 TEST(MirrorPlan, EqualInputGivesEqualPlans) {

@@ -204,6 +204,56 @@ TEST_F(WindowsGlTest, aWindowInAWindowShowsTheCityMirroredTwice) {
     EXPECT_LT(within(seen, truth, black, carried, view).mean, 1.5);
 }
 
+TEST_F(WindowsGlTest, wetGroundMirrorsWhatStandsOnItAndNothingElseChanges) {
+    // A lit box ahead, dark ground: what is light below the horizon is its image.
+    city::CityModel city = street(false);
+    city.chunks.resize(1);
+    city.materials[4].emission = {3, 1, 0.2f};
+    city.materials[0].tint = glm::vec3(0.02f);
+    city::Mesh mesh;
+    test::addBox(mesh, {-3, 20, 0}, {3, 22, 6}, 4);
+    city.chunks.push_back(test::chunkOf(city::ChunkKind::building, std::move(mesh)));
+    const View view = lookAt({0, 0, 1.5}, {0, 20, 0.5}, 1.0, size);
+    RenderOptions options;
+    options.antialiasing = Antialiasing::none;
+    options.shadows = false;
+    SceneRenderer renderer(city, models_, options);
+    FrameScene scene;
+    scene.lighting = lightingAt(23);
+    const OffscreenTarget target(size);
+    const auto draw = [&](bool wet) {
+        renderer.prepare(scene);
+        MirrorSettings settings;
+        if (wet) settings.wetRoad = 0;
+        const MirrorPlan plan = MirrorPlanner({}).plan(std::span(&view, 1), settings);
+        renderer.drawView(view, {}, target.framebuffer(), {&plan, 0});
+        return readPixels(target.framebuffer(), size);
+    };
+    const Image8 dry = draw(false), wet = draw(true);
+    EXPECT_EQ(renderer.counters().mirrorPasses, 1u);
+    const reflection::EyeView eye = eyeViewOf(view);
+    const auto red = [&](const Image8& image, const glm::dvec3& p, int dx = 0) {
+        const glm::dvec4 clip = eye.clip(p);
+        const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
+        return int(
+            image.rgba[static_cast<std::size_t>(((size.y - 1 - int(at.y)) * size.x + int(at.x) + dx) * 4)]);
+    };
+    // The mirror image of the lit wall, carried 3 m under the ground, over a few metres of street.
+    double on = 0, beside = 0, before = 0;
+    for (int k = 0; k < 20; ++k) {
+        const glm::dvec3 image(-1.9 + 0.2 * k, 20, -3), aside(-14 + 0.2 * k, 20, -3);
+        on += red(wet, image) / 20.0;
+        beside += red(wet, aside) / 20.0;
+        before += red(dry, image) / 20.0;
+    }
+    EXPECT_GT(on, before + 15);
+    EXPECT_GT(on, beside + 10);
+    // Above the horizon nothing is wet.
+    const auto sky = wet.rgba.begin();
+    const auto rows = static_cast<std::ptrdiff_t>(size.x * 4 * (size.y / 3));
+    EXPECT_TRUE(std::equal(sky, sky + rows, dry.rgba.begin()));
+}
+
 TEST_F(WindowsGlTest, noWindowInViewKeepsNoTexture) {
     const city::GlassFront front = pane(-8, 9, glassY, 0.4, 5, false);
     const city::CityModel city = street(true);
