@@ -159,6 +159,8 @@ class WindowsBench {
         for (Run& run : runs_)
             if (run.what.name == "depth 2") with = &run;
         if (with == nullptr) return;
+        const MirrorCounters planned = with->planned;
+        const RenderCounters drawn = with->drawn;
         for (std::uint32_t i = 0; i < framesBefore + 4 * framesMeasured && !interrupted(); ++i) {
             const bool first = i % 2 == 0;
             double with_ = 0, without = 0;
@@ -171,6 +173,8 @@ class WindowsBench {
             with->awayMs.push_back(with_);
             with->awayRatio.push_back(with_ / without);
         }
+        with->planned = planned;  // those of the measurement
+        with->drawn = drawn;
     }
 
     /// Errors on the pixels that show glass, but for outlines, against ray traced pictures; pictures in
