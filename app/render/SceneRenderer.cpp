@@ -15,6 +15,7 @@
 #include "app/render/CubeFaces.h"
 #include "app/render/FrameUniforms.h"
 #include "app/render/GlassPass.h"
+#include "app/render/NodeView.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/SignalLamps.h"
 #include "app/render/StandingView.h"
@@ -54,41 +55,6 @@ int shadowSize(const city::Aabb& bounds) {
     int texels = 1024;
     while (texels < 8192 && static_cast<float>(texels) * 0.12f < std::max(size.x, size.y)) texels *= 2;
     return texels;
-}
-
-void setDrawState() {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GEQUAL);
-    glCullFace(GL_BACK);
-    glFrontFace(GL_CCW);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_STENCIL_TEST);
-    glDisable(GL_FRAMEBUFFER_SRGB);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
-
-void setDrawState(const reflection::MirrorTarget& target) {
-    setDrawState();
-    const glm::ivec2 part = target.scissor.size();
-    glScissor(target.scissor.low.x, target.scissor.low.y, part.x, part.y);
-    glEnable(GL_SCISSOR_TEST);
-    glFrontFace(target.mirrored ? GL_CW : GL_CCW);
-}
-
-glm::mat4 clipFromRelative(const glm::dmat4& clipFromView, const glm::dmat3& viewFromWorld) {
-    return glm::mat4(clipFromView * glm::dmat4(viewFromWorld));
-}
-
-/// The eye behind the glass, as far as the glass lets it see.
-PassView passOf(const reflection::ReflectionNode& node, float share) {
-    PassView pass(node.view.eye, clipFromRelative(node.obliqueClipFromView, node.view.viewFromWorld),
-                  share * 0.5f * static_cast<float>(node.resolution.y) *
-                      std::abs(static_cast<float>(node.clipFromView[1][1])));
-    if (!node.frustum.empty()) pass.portal = &node.frustum;
-    return pass;
 }
 
 }  // namespace
