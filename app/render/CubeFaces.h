@@ -1,8 +1,10 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "reflection/reference_maps/CubeMapping.h"
 
 namespace app {
 
@@ -10,18 +12,9 @@ namespace app {
 /// such that texel (s, t) of the face is where OpenGL's cube sampling looks: table 8.19 of the OpenGL 4.5
 /// specification.
 inline glm::mat4 clipFromCubeFace(int face, float nearPlane) {
-    struct Axes {
-        glm::vec3 s, t, major;
-    };
-    static constexpr std::array<Axes, 6> axes{{{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}},
-                                               {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
-                                               {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-                                               {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
-                                               {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
-                                               {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}};
-    const Axes& a = axes[static_cast<std::size_t>(face)];
+    const reflection::CubeFace& f = reflection::cubeFaces[static_cast<std::size_t>(face)];
     glm::mat4 clip(0);
-    for (int i = 0; i < 3; ++i) clip[i] = glm::vec4(a.s[i], a.t[i], 0, a.major[i]);
+    for (int i = 0; i < 3; ++i) clip[i] = glm::vec4(f.sAxis[i], f.tAxis[i], 0, f.major[i]);
     clip[3][2] = nearPlane;
     return clip;
 }

@@ -1,7 +1,9 @@
 #include "reflection/planar/EyeView.h"
 
-#include <array>
 #include <cmath>
+#include <cstddef>
+
+#include "reflection/reference_maps/CubeMapping.h"
 
 namespace reflection {
 
@@ -21,40 +23,35 @@ glm::dmat4 reversedPerspective(double scaleX, double scaleY, double nearPlane) {
     return clip;
 }
 
+/// Rotation that looks along `towards`, up as far as may be; the identity without a direction.
+glm::dmat3 uprightAxes(const glm::dvec3& towards) {
+    const double length = glm::length(towards);
+    if (!(length > 0) || !std::isfinite(length)) return glm::dmat3(1);
+    const glm::dvec3 forward = towards / length;
+    // Straight up or down, north takes the place of up.
+    const bool steep = std::abs(forward.z) > 1 - 1e-12;
+    const glm::dvec3 right =
+        glm::normalize(glm::cross(forward, steep ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1)));
+    return viewAxes(right, glm::cross(right, forward), forward);
+}
+
 }  // namespace
 
 EyeView perspectiveView(const glm::dvec3& eye, const glm::dvec3& target, double fovYRadians, double aspect,
                         double nearPlane) {
     EyeView view;
     view.eye = eye;
-    const glm::dvec3 towards = target - eye;
-    const double length = glm::length(towards);
-    if (length > 0 && std::isfinite(length)) {
-        const glm::dvec3 forward = towards / length;
-        const bool steep = std::abs(forward.z) > 1 - 1e-12;
-        const glm::dvec3 right =
-            glm::normalize(glm::cross(forward, steep ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1)));
-        view.viewFromWorld = viewAxes(right, glm::cross(right, forward), forward);
-    }
+    view.viewFromWorld = uprightAxes(target - eye);
     const double scale = 1 / std::tan(0.5 * fovYRadians);
     view.clipFromView = reversedPerspective(scale / aspect, scale, nearPlane);
     return view;
 }
 
 EyeView cubeFaceView(const glm::dvec3& eye, int face, double nearPlane) {
-    struct Axes {
-        glm::dvec3 s, t, major;
-    };
-    static const std::array<Axes, 6> axes{{{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}},
-                                           {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
-                                           {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-                                           {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
-                                           {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
-                                           {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}};
-    const Axes& a = axes[static_cast<std::size_t>(face)];
+    const CubeFace& f = cubeFaces[static_cast<std::size_t>(face)];
     EyeView view;
     view.eye = eye;
-    view.viewFromWorld = viewAxes(a.s, a.t, a.major);
+    view.viewFromWorld = viewAxes(glm::dvec3(f.sAxis), glm::dvec3(f.tAxis), glm::dvec3(f.major));
     view.clipFromView = reversedPerspective(1, 1, nearPlane);
     return view;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "reflection/reference_maps/CubeMapping.h"
+#include "reflection/local_map/Parallax.h"
 
 namespace reflection {
 
@@ -19,18 +19,11 @@ std::optional<double> featureAngle(const glm::dvec3& at, const glm::dvec3& shown
 
 std::optional<glm::dvec3> featureShown(const LocalMap& map, const glm::dvec3& centre,
                                        const glm::vec3& direction) {
-    const float greatest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (map.faceSize < 1 || !(greatest > 0) || !std::isfinite(greatest)) return std::nullopt;
-    const CubePoint point = cubePoint(direction);
-    const auto texel = [&](float st) {
-        return std::clamp(static_cast<int>((st + 1) * 0.5f * static_cast<float>(map.faceSize)), 0,
-                          map.faceSize - 1);
-    };
-    const float depth =
-        map.depth[map.faceOffset(point.face) +
-                  static_cast<std::size_t>(texel(point.st.y) * map.faceSize + texel(point.st.x))];
+    const float depth = depthTowards(map, direction);
     if (!std::isfinite(depth)) return std::nullopt;
-    return centre + static_cast<double>(depth) * glm::dvec3(direction / greatest);
+    return centre + static_cast<double>(depth) *
+                        glm::dvec3(direction / std::max({std::abs(direction.x), std::abs(direction.y),
+                                                         std::abs(direction.z)}));
 }
 
 }  // namespace reflection
