@@ -34,6 +34,14 @@ Command exporting() {
             .run = [](const Options&) { return exitOk; }};
 }
 
+Command truth() {
+    return {.name = "truth",
+            .summary = "test",
+            .groups = cityOptions | rayOptions,
+            .benches = {},
+            .run = [](const Options&) { return exitOk; }};
+}
+
 ParseOutcome parse(const Command& command, std::vector<std::string> arguments) {
     return parseOptions(command, arguments);
 }
@@ -137,6 +145,30 @@ TEST(OptionsTest, absurdNumbersAreRefusedAndNamed) {
             EXPECT_EQ(code, exitUsage) << argument;
             EXPECT_NE(said.find(option), std::string::npos) << said;
         }
+}
+
+TEST(OptionsTest, raysAndBouncesAreWholeNumbersWithinTheirRange) {
+    const ParseOutcome none = parse(truth(), {});
+    EXPECT_EQ(std::get<Options>(none).samples, 64u);
+    EXPECT_EQ(std::get<Options>(none).bounces, 3u);
+    for (const auto& [samples, bounces] : {std::pair("1", "1"), std::pair("65536", "16")}) {
+        const ParseOutcome outcome = parse(truth(), {"--samples", samples, "--bounces", bounces});
+        ASSERT_TRUE(std::holds_alternative<Options>(outcome)) << samples;
+        EXPECT_EQ(std::to_string(std::get<Options>(outcome).samples), samples);
+        EXPECT_EQ(std::to_string(std::get<Options>(outcome).bounces), bounces);
+    }
+    const std::vector<std::pair<std::string, std::vector<std::string>>> absurd{
+        {"--samples", {"0", "-1", "65537", "1.5", "many", "", "4294967297"}},
+        {"--bounces", {"0", "-1", "17", "2.5", "x", "", "4294967297"}},
+    };
+    for (const auto& [option, values] : absurd)
+        for (const std::string& value : values) {
+            const std::string argument = std::string(option).append("=").append(value);
+            const auto [code, said] = refused(truth(), {argument});
+            EXPECT_EQ(code, exitUsage) << argument;
+            EXPECT_NE(said.find(option), std::string::npos) << said;
+        }
+    EXPECT_EQ(refused(tour(), {"--samples", "4"}).first, exitUsage);
 }
 
 TEST(OptionsTest, aBudgetIsATimeAndExcludesAnError) {
