@@ -6,7 +6,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "vehicles/import/ReadGltf.h"
 #include "vehicles/import/SurfaceGuess.h"
 #include "vehicles/models/Levels.h"
 
@@ -38,10 +37,13 @@ bool roundAndAside(const city::Aabb& wheel, const city::Aabb& whole) {
 }  // namespace
 
 VehicleModel loadVehicle(const std::filesystem::path& file, float length) {
+    return vehicleFrom(readGltf(file), file, length);
+}
+
+VehicleModel vehicleFrom(const GltfScene& scene, const std::filesystem::path& file, float length) {
     if (!(length > 0.1f && length < 200))
         throw std::runtime_error(file.string() + ": a vehicle of " + std::to_string(length) +
                                  " m cannot be made; ask for a length between 0.1 and 200 m");
-    const GltfScene scene = readGltf(file);
     const std::vector<Surface> surfaces = guessSurfaces(scene);
 
     city::Aabb whole;

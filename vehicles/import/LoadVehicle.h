@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "vehicles/import/ReadGltf.h"
 #include "vehicles/models/VehicleModel.h"
 
 namespace vehicles {
@@ -11,5 +12,8 @@ namespace vehicles {
 /// instance's. Throws std::runtime_error: one sentence with file, place in it, cause and remedy
 /// (Draco-compressed files are named as such).
 VehicleModel loadVehicle(const std::filesystem::path& file, float length);
+
+/// What `loadVehicle` makes of the file's triangles, once read. `file`: for messages and the name.
+VehicleModel vehicleFrom(const GltfScene& scene, const std::filesystem::path& file, float length);
 
 }  // namespace vehicles

@@ -40,6 +40,43 @@ float squaredDistance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b
     return square(ap - vb / sum * ab - vc / sum * ac);
 }
 
+/// A mesh's triangles with balls around them, which tell most of them apart without their points.
+class TriangleBalls {
+  public:
+    explicit TriangleBalls(const city::Mesh& mesh) : mesh_(mesh) {
+        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+            const glm::vec3 a = at(i), b = at(i + 1), c = at(i + 2), centre = (a + b + c) / 3.0f;
+            balls_.push_back({centre, std::max({glm::length(a - centre), glm::length(b - centre),
+                                                glm::length(c - centre)})});
+        }
+    }
+    struct Nearest {
+        float squared = std::numeric_limits<float>::max();
+        std::size_t triangle = 0;
+    };
+    Nearest nearest(const glm::vec3& p) const {
+        Nearest best;
+        for (std::size_t t = 0; t < balls_.size(); ++t) {
+            const glm::vec3 d = p - balls_[t].centre;
+            const float reach = std::sqrt(best.squared) + balls_[t].radius;
+            if (glm::dot(d, d) > reach * reach) continue;
+            const float squared = squaredDistance(p, at(3 * t), at(3 * t + 1), at(3 * t + 2));
+            if (squared < best.squared) best = {squared, t};
+        }
+        return best;
+    }
+
+  private:
+    struct Ball {
+        glm::vec3 centre;
+        float radius;
+    };
+    const glm::vec3& at(std::size_t i) const { return mesh_.vertices[mesh_.indices[i]].position; }
+
+    const city::Mesh& mesh_;
+    std::vector<Ball> balls_;
+};
+
 std::size_t vertexCount(const city::Mesh& mesh) {
     return mesh.vertices.size();
 }
@@ -119,21 +156,13 @@ city::Mesh simplifiedAcross(const city::Mesh& mesh, std::size_t triangles) {
     for (std::size_t i = 0; i < positions.size(); ++i) shared.vertices[same[i]] = mesh.vertices[i];
     for (const auto i : mesh.indices) shared.indices.push_back(same[i]);
     const city::Mesh coarse = simplified(shared, triangles);
+    const TriangleBalls balls(mesh);
     std::vector<city::Vertex> corners;
     for (std::size_t i = 0; i + 2 < coarse.indices.size(); i += 3) {
         glm::vec3 middle{0};
         for (int k = 0; k < 3; ++k) middle += coarse.vertices[coarse.indices[i + k]].position / 3.0f;
-        float best = std::numeric_limits<float>::max();
-        std::uint32_t material = 0;
-        for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-            const city::Vertex& a = mesh.vertices[mesh.indices[t]];
-            const float d = squaredDistance(middle, a.position, positions[mesh.indices[t + 1]],
-                                            positions[mesh.indices[t + 2]]);
-            if (d < best) {
-                best = d;
-                material = a.material;
-            }
-        }
+        const std::size_t nearest = balls.nearest(middle).triangle;
+        const std::uint32_t material = mesh.vertices[mesh.indices[3 * nearest]].material;
         for (int k = 0; k < 3; ++k) {
             corners.push_back(coarse.vertices[coarse.indices[i + k]]);
             corners.back().material = material;
@@ -172,18 +201,8 @@ void optimise(city::Mesh& mesh) {
 float distanceBetween(const city::Mesh& reference, const city::Mesh& mesh, std::size_t samples) {
     if (reference.empty()) return 0;
     if (mesh.empty()) return std::numeric_limits<float>::infinity();
-    struct Ball {
-        glm::vec3 centre;
-        float radius;
-    };
-    std::vector<Ball> balls;
-    const auto at = [&](const city::Mesh& m, std::size_t i) { return m.vertices[m.indices[i]].position; };
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const glm::vec3 a = at(mesh, i), b = at(mesh, i + 1), c = at(mesh, i + 2),
-                        centre = (a + b + c) / 3.0f;
-        balls.push_back(
-            {centre, std::max({glm::length(a - centre), glm::length(b - centre), glm::length(c - centre)})});
-    }
+    const TriangleBalls balls(mesh);
+    const auto at = [&](std::size_t i) { return reference.vertices[reference.indices[i]].position; };
     const std::size_t stride =
         std::max<std::size_t>(1, 2 * reference.triangleCount() / std::max<std::size_t>(samples, 1));
     float worst = 0;
@@ -191,19 +210,8 @@ float distanceBetween(const city::Mesh& reference, const city::Mesh& mesh, std::
         if (reference.vertices[reference.indices[3 * t]].material ==
             static_cast<std::uint32_t>(Surface::interior))
             continue;
-        const glm::vec3 a = at(reference, 3 * t),
-                        middle = (a + at(reference, 3 * t + 1) + at(reference, 3 * t + 2)) / 3.0f;
-        for (const glm::vec3& p : {a, middle}) {
-            float best = std::numeric_limits<float>::max();  // squared
-            for (std::size_t i = 0; i < balls.size(); ++i) {
-                const glm::vec3 d = p - balls[i].centre;
-                const float reach = std::sqrt(best) + balls[i].radius;
-                if (glm::dot(d, d) > reach * reach) continue;
-                best = std::min(
-                    best, squaredDistance(p, at(mesh, 3 * i), at(mesh, 3 * i + 1), at(mesh, 3 * i + 2)));
-            }
-            worst = std::max(worst, best);
-        }
+        const glm::vec3 a = at(3 * t), middle = (a + at(3 * t + 1) + at(3 * t + 2)) / 3.0f;
+        for (const glm::vec3& p : {a, middle}) worst = std::max(worst, balls.nearest(p).squared);
     }
     return std::sqrt(worst);
 }
