@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "city/model/LaneClearance.h"
 #include "city/terrain/Rasterise.h"
 
 namespace city {
@@ -16,6 +17,12 @@ namespace {
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 constexpr float margin = 30;
 constexpr double mostCells = 268435456.0;
+
+/// Metres beside a lane over which crowns hang without standing there: the width of a parking strip. Mean
+/// FLIP of a car 10 m away with crowns as columns everywhere, and none within 0, 1.5, 2, 2.5, 4 m of lanes:
+/// Helsinki 0.118, 0.085 0.084 0.084 0.075 0.082; boulevard 0.089, 0.089 0.075 0.075 0.093 0.094 (there the
+/// trees themselves stand 3 m from lanes).
+constexpr float crownClearance = 2;
 
 Aabb transformed(const Aabb& box, const glm::mat4& m) {
     Aabb out;
@@ -147,12 +154,15 @@ Heightfield cityHeightfield(const CityModel& city, float cellSize) {
         if (const Mesh* mesh = levelFor(prototype, scale, cellSize))
             rasterise(*mesh, m, Coverage::centre, trees);
     }
+    clearLanes(city.roads, 0, buildings);
+    clearLanes(city.roads, 0, touched);
     // Closing: gaps between leaves fill up, the crown's outline stays.
     if (!city.placements.empty()) {
         const Heightfield grown =
             overNeighbours(trees, nothing, [](float a, float b) { return std::max(a, b); });
-        const Heightfield closed = overNeighbours(grown, std::numeric_limits<float>::infinity(),
-                                                  [](float a, float b) { return std::min(a, b); });
+        Heightfield closed = overNeighbours(grown, std::numeric_limits<float>::infinity(),
+                                            [](float a, float b) { return std::min(a, b); });
+        clearLanes(city.roads, crownClearance, closed);
         raiseTo(field, closed);
     }
     raiseTo(field, buildings);

@@ -10,10 +10,11 @@ namespace city {
 /// cell is as high as what lies over its centre; parts of buildings too thin to cover a centre (parapets,
 /// free-standing walls) are kept, at most a cell too wide. Chunks of furniture (awnings, balconies, cornices,
 /// signs) are left out: as columns they would stand down to the pavement and move the fronts behind them by a
-/// metre. Covers buildings, placements and lanes with a margin of 30 m, within the city's bounds; a plain
-/// that runs on to the horizon does not blow it up. A city with nothing in it gives one empty cell. Throws
-/// std::invalid_argument for a cell that is not finite and positive or so small that the field would pass
-/// 2^28 cells. Cost: linear in triangles and cells.
+/// metre. So is what hangs over lanes: storeys above a passage, and crowns as far as a parking strip beside
+/// it (a car under a crown would be inside its column). Covers buildings, placements and lanes with a margin
+/// of 30 m, within the city's bounds; a plain that runs on to the horizon does not blow it up. A city with
+/// nothing in it gives one empty cell. Throws std::invalid_argument for a cell that is not finite and
+/// positive or so small that the field would pass 2^28 cells. Cost: linear in triangles and cells.
 Heightfield cityHeightfield(const CityModel& city, float cellSize = 1);
 
 /// Buildings alone, each cell no higher than what stands over the whole of it: what hides behind it is hidden
