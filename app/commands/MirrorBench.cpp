@@ -185,7 +185,8 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         Economies economies;
         CurvedMaps curved;
         glm::ivec2 mapSize;
-        bool plain = false;  ///< without any reflection
+        bool together = false;  ///< maps of a level side by side
+        bool plain = false;     ///< without any reflection
     };
     const CurvedMaps first = world.curved.empty() ? CurvedMaps::none : CurvedMaps::viewDependent;
     std::vector<std::vector<Case>> groups;
@@ -194,12 +195,15 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
     const CurvedMaps second = world.curved.empty() ? CurvedMaps::none : CurvedMaps::cube;
     const glm::ivec2 paperMap(256, 256), pictureMap(0, 0);
     groups.push_back({{"256 x 256, all", Economies::paper(), first, paperMap},
-                      {"256 x 256, culled", all, first, paperMap}});
+                      {"256 x 256, culled", all, first, paperMap},
+                      {"256 x 256, culled, together", all, first, paperMap, true}});
     if (first != second)
         groups.push_back({{"256 x 256, cubes, all", Economies::paper(), second, paperMap},
-                          {"256 x 256, cubes, culled", all, second, paperMap}});
+                          {"256 x 256, cubes, culled", all, second, paperMap},
+                          {"256 x 256, cubes, culled, together", all, second, paperMap, true}});
     groups.push_back({{"picture's texels, all", Economies::paper(), second, pictureMap},
-                      {"picture's texels, culled", all, second, pictureMap}});
+                      {"picture's texels, culled", all, second, pictureMap},
+                      {"picture's texels, culled, together", all, second, pictureMap, true}});
     if (eachEconomy) {
         Economies more = all;
         more.cap = more.cutOff = true;
@@ -223,7 +227,7 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         return settings;
     };
     for (std::vector<Case>& group : groups)
-        group.push_back({"no reflections", all, group[0].curved, paperMap, true});
+        group.push_back({"no reflections", all, group[0].curved, paperMap, false, true});
     for (const std::vector<Case>& group : groups) {
         std::vector<std::unique_ptr<MirrorStage>> stages;
         std::vector<std::vector<double>> times(group.size());
@@ -232,9 +236,12 @@ MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, 
         int rounds = 7;
         for (int round = 0; round <= rounds; ++round)
             for (std::size_t i = 0; i < group.size() && !options.stop(); ++i) {
-                if (round == 0)
+                if (round == 0) {
+                    reflection::MirrorPassOptions how = eightBits();
+                    how.together = group[i].together;
                     stages.push_back(
-                        std::make_unique<MirrorStage>(world, options.size, group[i].curved, eightBits()));
+                        std::make_unique<MirrorStage>(world, options.size, group[i].curved, how));
+                }
                 if (i >= stages.size()) continue;
                 const std::uint64_t before = stages[i]->trianglesDrawn();
                 const double ms = frameTime(*stages[i], settingsOf(group[i]));

@@ -73,6 +73,7 @@ const reflection::ReflectionTree& MirrorStage::draw(reflection::TreeSettings set
         my.arrays.curved[job.curved].hasMap = true;
     my.drawScene();
     my.pass.drawReflections(my.tree, 0, my.renderer, my.target);
+    my.renderer.finishRoot(my.tree, 0);
     return my.tree;
 }
 

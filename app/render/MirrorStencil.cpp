@@ -19,6 +19,8 @@ class Stencil {
     Stencil(const ReflectionTree& tree, const MirrorWorld& world, MirrorWorldRenderer& renderer,
             const MirrorTarget& target)
         : tree_(tree), world_(world), renderer_(renderer), target_(target), below_(tree.nodes.size()) {
+        // Reflections are drawn over the whole image.
+        for (ReflectionNode& n : tree_.nodes) n.clipFromView = n.obliqueClipFromView = n.view.clipFromView;
         for (std::uint32_t n = 0; n < tree.nodes.size(); ++n)
             if (tree.nodes[n].parent != ReflectionNode::none) below_[tree.nodes[n].parent].push_back(n);
     }
@@ -57,11 +59,9 @@ class Stencil {
         shapes(false);
         glDepthRange(0, 1);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        // The reflection, over the whole image.
-        ReflectionNode whole = node;
-        whole.clipFromView = whole.obliqueClipFromView = node.view.clipFromView;
         glFrontFace(node.view.mirrored() ? GL_CW : GL_CCW);
-        renderer_.drawNode(tree_, whole, target_);
+        renderer_.drawNode(tree_, node, target_);
+        renderer_.finishNode(tree_, node, target_);
         for (std::uint32_t child : below_[index]) draw(child, node.view, node.glass, value + 1);
         // The mirror's share of it, and its depth for what is drawn later.
         glStencilFunc(GL_EQUAL, value + 1, 0xff);
@@ -76,7 +76,7 @@ class Stencil {
     }
 
   private:
-    const ReflectionTree& tree_;
+    ReflectionTree tree_;
     const MirrorWorld& world_;
     MirrorWorldRenderer& renderer_;
     const MirrorTarget& target_;
@@ -87,6 +87,7 @@ class Stencil {
 
 void drawByStencil(const ReflectionTree& tree, std::uint32_t root, const MirrorWorld& world,
                    MirrorWorldRenderer& renderer, const MirrorTarget& target) {
+    renderer.finishRoot(tree, root);
     Stencil stencil(tree, world, renderer, target);
     for (std::uint32_t n = 0; n < tree.nodes.size(); ++n)
         if (tree.nodes[n].root == root && tree.nodes[n].parent == ReflectionNode::none)

@@ -143,6 +143,24 @@ struct MirrorWorldRenderer::Impl {
         triangles += static_cast<std::uint64_t>(range.count / 3);
     }
 
+    /// Marks what is drawn from a map later: the reflectors of those nodes that are met in the image.
+    template <class IsMet>
+    void markApplied(const ReflectionTree& tree, IsMet&& isMet) {
+        flatApplied.assign(world.mirrors.size(), false);
+        curvedApplied.assign(world.curved.size(), false);
+        for (const ReflectionNode& n : tree.nodes) {
+            if (!isMet(n)) continue;
+            for (const std::uint32_t m : tree.mirrorsOf(n)) flatApplied[m] = true;
+            if (!n.planar()) curvedApplied[n.curved] = true;
+        }
+    }
+    void markRoot(const ReflectionTree& tree, const ReflectionRoot& root) {
+        const auto index = static_cast<std::uint32_t>(&root - tree.roots.data());
+        markApplied(tree, [&](const ReflectionNode& n) {
+            return n.root == index && n.parent == ReflectionNode::none;
+        });
+    }
+
     void drawImage(const EyeView& view, const glm::dmat4& clipFromView, const HalfSpace& glass,
                    std::span<const std::uint32_t> objects, const reflection::HalfSpaces& frustum,
                    std::uint32_t hidden) {
@@ -160,14 +178,16 @@ struct MirrorWorldRenderer::Impl {
         for (std::uint32_t o : objects) list(g.objects[o]);
         for (std::size_t m = 0; m < g.mirrors.size(); ++m) {
             const reflection::MirrorPlane& plane = world.mirrors[m].mirror.plane;
-            if (plane.signedDistance(view.eye) > 0 &&
+            if (!flatApplied[m] && plane.signedDistance(view.eye) > 0 &&
                 reflection::touches(frustum, plane.point() - view.eye, plane.radius()))
                 list(g.mirrors[m]);
         }
         std::vector<std::uint32_t> shown;
         for (std::uint32_t c = 0; c < g.curved.size(); ++c) {
             const reflection::CurvedReflector& r = world.curved[c].reflector;
-            if (c == hidden || !reflection::touches(frustum, r.centre - view.eye, r.radius)) continue;
+            if (c == hidden || curvedApplied[c] ||
+                !reflection::touches(frustum, r.centre - view.eye, r.radius))
+                continue;
             if (environment[c] != 0)
                 shown.push_back(c);
             else
@@ -185,10 +205,10 @@ struct MirrorWorldRenderer::Impl {
                 draw(g.curved[c]);
             }
         }
-        drawSky(view, clipFromView);
     }
 
     void drawSky(const EyeView& view, const glm::dmat4& clipFromView) const {
+        setState();
         const gl::Program& p = view.projection == Projection::perspective ? sky : skyBent;
         p.set("relativeFromView", glm::mat3(glm::transpose(view.viewFromWorld)));
         p.set("projection",
@@ -214,6 +234,7 @@ struct MirrorWorldRenderer::Impl {
     gl::Program skyBent = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"}, {"PARABOLOID"});
     gl::VertexArray nothing = gl::VertexArray::create();
     std::vector<std::uint32_t> environment;
+    std::vector<bool> flatApplied, curvedApplied;
     std::vector<GLsizei> counts;
     std::vector<const void*> offsets;
     std::uint64_t triangles = 0;
@@ -231,19 +252,35 @@ void MirrorWorldRenderer::setOblique(bool oblique) {
 void MirrorWorldRenderer::drawRoot(const ReflectionTree& tree, std::uint32_t root, const MirrorTarget&) {
     const ReflectionRoot& r = tree.roots[root];
     glFrontFace(r.view.mirrored() ? GL_CW : GL_CCW);
+    impl_->markRoot(tree, r);
     impl_->drawImage(r.view, r.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(r), r.frustum, r.curved);
 }
 
 void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionNode& node,
                                    const MirrorTarget&) {
+    const auto index = static_cast<std::uint32_t>(&node - tree.nodes.data());
+    impl_->markApplied(tree, [&](const ReflectionNode& n) { return n.parent == index; });
     impl_->drawImage(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView, node.glass,
                      tree.objectsOf(node), node.frustum, node.hiddenCurved);
 }
 
 void MirrorWorldRenderer::drawFace(const ReflectionTree& tree, const ReflectionRoot& face,
                                    const MirrorTarget&) {
+    impl_->markRoot(tree, face);
     impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(face), face.frustum,
                      face.curved);
+}
+
+void MirrorWorldRenderer::finishRoot(const ReflectionTree& tree, std::uint32_t root) {
+    impl_->drawSky(tree.roots[root].view, tree.roots[root].view.clipFromView);
+}
+
+void MirrorWorldRenderer::finishNode(const ReflectionTree&, const ReflectionNode& node, const MirrorTarget&) {
+    impl_->drawSky(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView);
+}
+
+void MirrorWorldRenderer::finishFace(const ReflectionTree&, const ReflectionRoot& face, const MirrorTarget&) {
+    impl_->drawSky(face.view, face.view.clipFromView);
 }
 
 void MirrorWorldRenderer::publish(const reflection::EnvironmentJob& job, std::uint32_t texture) {
@@ -268,7 +305,9 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
         const gl::Program& p = my.use(my.sphere, view, clip, glass);
         p.set("mapFromRelative", glm::mat3(node.view.viewFromWorld));
         p.set("mapScale", static_cast<float>(node.clipFromView[0][0]));
-        p.set("mapPart", glm::vec2(node.resolution) / map.texels);
+        const glm::vec2 low = glm::vec2(map.uvLimits) - 0.5f / map.texels;
+        p.set("mapPart", glm::vec4(glm::vec2(node.resolution) / map.texels, low));
+        p.set("mapLimits", map.uvLimits);
         p.set("reflectance", my.world.curved[node.curved].reflector.surface.reflectance);
         p.set("tint", my.world.curved[node.curved].tint);
         my.draw(g.curved[node.curved]);

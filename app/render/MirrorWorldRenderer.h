@@ -17,7 +17,8 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
     MirrorWorldRenderer(const MirrorWorld& world, reflection::CurvedMaps curved);
     ~MirrorWorldRenderer() override;
 
-    /// Everything but reflections in one of the tree's roots; the target is bound, its depth cleared.
+    /// Everything but the sky and mirrors of which the tree has reflections in one of its roots; the target
+    /// is bound, its depth cleared. When the reflections are drawn: `finishRoot`.
     void drawRoot(const reflection::ReflectionTree& tree, std::uint32_t root,
                   const reflection::MirrorTarget& target);
 
@@ -28,6 +29,11 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
                    const reflection::MirrorTarget& target) override;
     void drawFace(const reflection::ReflectionTree& tree, const reflection::ReflectionRoot& face,
                   const reflection::MirrorTarget& target) override;
+    void finishRoot(const reflection::ReflectionTree& tree, std::uint32_t root);
+    void finishNode(const reflection::ReflectionTree& tree, const reflection::ReflectionNode& node,
+                    const reflection::MirrorTarget& target) override;
+    void finishFace(const reflection::ReflectionTree& tree, const reflection::ReflectionRoot& face,
+                    const reflection::MirrorTarget& target) override;
     void publish(const reflection::EnvironmentJob& job, std::uint32_t texture) override;
 
     /// Mirrors by oblique near planes in place of clip distances.

@@ -21,12 +21,11 @@ void main() {
 layout(binding = 0) uniform sampler2D finer;
 uniform float finerLevel;
 uniform vec2 finerTexel;  // 1 / size of the finer level
-uniform vec2 limit;       // middle of the last texel in use, in texture coordinates
+uniform vec4 limits;      // middles of the outermost texels in use, in texture coordinates: low xy, high zw
 
 void main() {
     vec2 at = 2.0 * gl_FragCoord.xy * finerTexel;
-    vec2 low = max(at - 0.75 * finerTexel, 0.5 * finerTexel), high = min(at + 0.75 * finerTexel, limit);
-    low = min(low, limit);
+    vec2 low = clamp(at - 0.75 * finerTexel, limits.xy, limits.zw), high = clamp(at + 0.75 * finerTexel, limits.xy, limits.zw);
     blurredOut = 0.25 * (textureLod(finer, low, finerLevel) + textureLod(finer, high, finerLevel) +
                          textureLod(finer, vec2(low.x, high.y), finerLevel) + textureLod(finer, vec2(high.x, low.y), finerLevel));
 }

@@ -12,6 +12,10 @@ vec3 mirrorSharp(vec2 fragment, vec2 shift) {
     return textureLod(mirrorColour, clamp(mirrorUv(fragment) + shift, uvLimits.xy, uvLimits.zw), 0.0).rgb;
 }
 
+// Middles of the outermost texels in use of a level; `texel`: half of one of its texels.
+vec2 mirrorBlurredFirst(vec2 texel) { return uvLimits.xy * blurredScale - 0.5 / vec2(textureSize(mirrorBlurred, 0)) + texel; }
+vec2 mirrorBlurredLast(vec2 texel) { return uvLimits.zw * blurredScale + 0.5 / vec2(textureSize(mirrorBlurred, 0)) - texel; }
+
 // Cubic B-spline of one level: four linear lookups; never blocky.
 vec4 mirrorSmooth(vec2 uv, float level) {
     vec2 size = vec2(textureSize(mirrorBlurred, int(level)));
@@ -22,7 +26,8 @@ vec4 mirrorSmooth(vec2 uv, float level) {
     vec2 low = w0 + w1, high = w2 + w3;
     vec2 a = (base - 0.5 + w1 / low) / size, b = (base + 1.5 + w3 / high) / size;
     // Outside the part in use lies another reflection.
-    vec2 first = 0.5 / size, last = uvLimits.zw * blurredScale + 0.5 / vec2(textureSize(mirrorBlurred, 0)) - first;
+    vec2 texel = 0.5 / size;
+    vec2 first = mirrorBlurredFirst(texel), last = mirrorBlurredLast(texel);
     a = clamp(a, first, max(last, first));
     b = clamp(b, first, max(last, first));
     return low.y * (low.x * textureLod(mirrorBlurred, a, level) + high.x * textureLod(mirrorBlurred, vec2(b.x, a.y), level)) +
@@ -47,8 +52,8 @@ vec4 mirrorQuick(vec2 uv, float sigma, int levels) {
     float level = 0.5 * log2(max((sigma * sigma + 0.25) / (5.0 / 12.0), 1.0));
     level = min(level, float(levels - 1));
     vec2 texel = 0.5 / vec2(textureSize(mirrorBlurred, int(ceil(level))));
-    vec2 last = uvLimits.zw * blurredScale + 0.5 / vec2(textureSize(mirrorBlurred, 0)) - texel;
-    return textureLod(mirrorBlurred, clamp(uv, texel, max(last, texel)), level);
+    vec2 first = mirrorBlurredFirst(texel), last = mirrorBlurredLast(texel);
+    return textureLod(mirrorBlurred, clamp(uv, first, max(last, first)), level);
 }
 
 // A rough mirror. `along`, `across`: texture coordinates by which the image moves when the reflected direction turns by one standard

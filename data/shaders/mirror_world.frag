@@ -23,7 +23,8 @@ uniform bool addDistance;
 layout(binding = 8) uniform sampler2D map;
 uniform mat3 mapFromRelative;  // view space of the map
 uniform float mapScale;        // ndc for one unit of x / -z
-uniform vec2 mapPart;          // of the texture in use
+uniform vec4 mapPart;          // of the texture in use: size, low corner
+uniform vec4 mapLimits;        // middles of its outermost texels
 #elif defined(CUBE)
 layout(binding = 8) uniform samplerCube map;
 #elif defined(PAIR)
@@ -64,7 +65,7 @@ void main() {
     // Directions beyond the map's field of view take its border's colour.
     vec2 at = q.z < -1e-4 ? q.xy / -q.z * mapScale : normalize(q.xy + vec2(1e-9)) * 2.0;
     at *= min(1.0, 1.0 / max(length(at), 1e-9));
-    light = textureLod(map, (0.5 + 0.5 * at) * mapPart, 0.0).rgb;
+    light = textureLod(map, clamp((0.5 + 0.5 * at) * mapPart.xy + mapPart.zw, mapLimits.xy, mapLimits.zw), 0.0).rgb;
 #elif defined(CUBE)
     light = textureLod(map, r, 0.0).rgb;
 #elif defined(PAIR)

@@ -30,22 +30,14 @@ void MirrorBlur::require(const glm::ivec2& size) {
     levels_.front().requireComplete("a rough mirror's map");
 }
 
-int MirrorBlur::blur(const MirrorLevel& map, const ReflectionNode& node, double sigma) {
-    require(map.size());
+int MirrorBlur::levelsFor(double sigma) {
     // The level whose kernel under the spline is as wide, and the next: see mirror_map.glsl.
     const double level = 0.5 * std::log2(std::max((sigma * sigma + 0.25) / (7.0 / 12), 1.0));
-    const int count = std::clamp(static_cast<int>(level) + 2, 2, mostLevels);
+    return std::clamp(static_cast<int>(level) + 2, 2, mostLevels);
+}
 
-    // A fragment's ray: the inverse of the projection, row by row, over gl_FragCoord.
-    const glm::dmat4& c = node.clipFromView;
-    const glm::dmat3 worldFromView = glm::transpose(node.view.viewFromWorld);
-    const glm::dvec2 perTexel = 2.0 / glm::dvec2(node.resolution);
-    const glm::dvec3 corner((-1 + c[2][0]) / c[0][0], (-1 + c[2][1]) / c[1][1], -1);
-    first_.set("rayBase", glm::vec3(worldFromView * corner));
-    first_.set("rayRight", glm::vec3(worldFromView * glm::dvec3(perTexel.x / c[0][0], 0, 0)));
-    first_.set("rayUp", glm::vec3(worldFromView * glm::dvec3(0, perTexel.y / c[1][1], 0)));
-    first_.set("glass", glm::vec4(node.glass));
-
+void MirrorBlur::blur(const MirrorLevel& map, std::span<const Item> items) {
+    require(map.size());
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
@@ -55,25 +47,45 @@ int MirrorBlur::blur(const MirrorLevel& map, const ReflectionNode& node, double 
     map.distance.bind(1);
     first_.use();
     glBindFramebuffer(GL_FRAMEBUFFER, levels_[0].name());
-    glViewport(0, 0, node.resolution.x, node.resolution.y);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    int most = 0;
+    for (const Item& item : items) {
+        const ReflectionNode& node = *item.node;
+        // A fragment's ray: the inverse of the projection, row by row, over gl_FragCoord.
+        const glm::dmat4& c = node.clipFromView;
+        const glm::dmat3 worldFromView = glm::transpose(node.view.viewFromWorld);
+        const glm::dvec2 perTexel = 2.0 / glm::dvec2(node.resolution);
+        const glm::dvec2 low = -1.0 - glm::dvec2(item.origin) * perTexel;
+        const glm::dvec3 corner((low.x + c[2][0]) / c[0][0], (low.y + c[2][1]) / c[1][1], -1);
+        first_.set("rayBase", glm::vec3(worldFromView * corner));
+        first_.set("rayRight", glm::vec3(worldFromView * glm::dvec3(perTexel.x / c[0][0], 0, 0)));
+        first_.set("rayUp", glm::vec3(worldFromView * glm::dvec3(0, perTexel.y / c[1][1], 0)));
+        first_.set("glass", glm::vec4(node.glass));
+        glViewport(item.origin.x, item.origin.y, node.resolution.x, node.resolution.y);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        most = std::max(most, levelsFor(item.sigma));
+    }
     pyramid_.bind(0);
     next_.use();
-    glm::ivec2 used = node.resolution, whole = size_;
-    for (int k = 1; k < count; ++k) {
+    for (int k = 1; k < most; ++k) {
         // Levels that are written must not be readable.
         glTextureParameteri(pyramid_.name(), GL_TEXTURE_MAX_LEVEL, k - 1);
+        const glm::vec2 finer(size_ / (1 << (k - 1)));
         next_.set("finerLevel", static_cast<float>(k - 1));
-        next_.set("finerTexel", 1.f / glm::vec2(whole));
-        next_.set("limit", (glm::vec2(used) - 0.5f) / glm::vec2(whole));
-        used = (used + 1) / 2;
-        whole /= 2;
+        next_.set("finerTexel", 1.f / finer);
         glBindFramebuffer(GL_FRAMEBUFFER, levels_[static_cast<std::size_t>(k)].name());
-        glViewport(0, 0, used.x, used.y);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        for (const Item& item : items) {
+            if (k >= levelsFor(item.sigma)) continue;
+            const auto used = [&](int level) {
+                return (item.node->resolution + ((1 << level) - 1)) / (1 << level);
+            };
+            const glm::vec2 from(item.origin / (1 << (k - 1)));
+            next_.set("limits",
+                      glm::vec4((from + 0.5f) / finer, (from + glm::vec2(used(k - 1)) - 0.5f) / finer));
+            glViewport(item.origin.x >> k, item.origin.y >> k, used(k).x, used(k).y);
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
     }
     glTextureParameteri(pyramid_.name(), GL_TEXTURE_MAX_LEVEL, mostLevels - 1);
-    return count;
 }
 
 std::uint64_t MirrorBlur::bytes() const {

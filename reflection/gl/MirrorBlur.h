@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "reflection/gl/Framebuffer.h"
@@ -12,14 +13,22 @@
 
 namespace reflection::gl {
 
-/// Blurs a mirror's finished map into a pyramid of smooth images (data/shaders/mirror_blur.frag), once for
+/// Blurs mirrors' finished maps into a pyramid of smooth images (data/shaders/mirror_blur.frag), once for
 /// all roughnesses: `mirror_map.glsl` mixes levels. One pyramid serves all recursion levels, as it is used
 /// before the next one is made.
 class MirrorBlur {
   public:
-    /// `sigma`: of the widest blur that will be asked for, in texels. Changes framebuffer, viewport, scissor,
-    /// depth test and blending. Returns the number of levels.
-    int blur(const MirrorLevel& map, const ReflectionNode& node, double sigma);
+    /// One of the images in a map.
+    struct Item {
+        const ReflectionNode* node = nullptr;
+        glm::ivec2 origin{0};  ///< multiples of 64
+        double sigma = 0;      ///< of the widest blur that will be asked for, in texels
+    };
+    /// Levels of the pyramid that a blur of so many texels needs.
+    static int levelsFor(double sigma);
+    /// All at once: a level of the pyramid is one change of target. Changes framebuffer, viewport, scissor,
+    /// depth test and blending.
+    void blur(const MirrorLevel& map, std::span<const Item> items);
     const Texture& pyramid() const { return pyramid_; }
     const glm::ivec2& size() const { return size_; }  ///< texels, of its finest level
     std::uint64_t bytes() const;

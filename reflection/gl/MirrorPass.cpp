@@ -6,38 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "reflection/gl/MirrorBlur.h"
-#include "reflection/gl/MirrorLevel.h"
-#include "reflection/planar/Gloss.h"
+#include "reflection/gl/MirrorMaps.h"
+#include "reflection/planar/MapAtlas.h"
 
 namespace reflection {
 
 namespace {
-
-GLenum glFormat(MirrorFormat format) {
-    switch (format) {
-        case MirrorFormat::rgba8:
-            return GL_RGBA8;
-        case MirrorFormat::r11g11b10f:
-            return GL_R11F_G11F_B10F;
-        case MirrorFormat::rgba16f:
-            return GL_RGBA16F;
-    }
-    return GL_RGBA8;
-}
-
-std::uint64_t bytesOf(MirrorFormat format) {
-    return format == MirrorFormat::rgba16f ? 8 : 4;
-}
-
-void bind(const MirrorTarget& target) {
-    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    const glm::ivec2 size = target.viewport.size(), part = target.scissor.size();
-    glViewport(target.viewport.low.x, target.viewport.low.y, size.x, size.y);
-    glScissor(target.scissor.low.x, target.scissor.low.y, part.x, part.y);
-    glEnable(GL_SCISSOR_TEST);
-    glFrontFace(target.mirrored ? GL_CW : GL_CCW);
-}
 
 void clearDepth() {
     glDepthMask(GL_TRUE);
@@ -47,96 +21,126 @@ void clearDepth() {
 
 }  // namespace
 
+using gl::MirrorImage;
+
 struct MirrorPass::Impl {
-    /// An image that reflections are met in.
-    struct Image {
-        const ReflectionNode* node = nullptr;  ///< null: a root's
-        NdcRect crop;
-        MirrorTarget target;
-    };
+    explicit Impl(const MirrorPassOptions& given) : options(given), maps(given) {}
 
     MirrorPassOptions options;
     MirrorPassCounters counters;
-    std::vector<gl::MirrorLevel> levels;
-    gl::MirrorBlur blur;
+    gl::MirrorMaps maps;
     std::vector<gl::Texture> environments;  ///< complete, one a curved reflector
     gl::Texture spare, spareDepth;          ///< the one being drawn
     gl::Framebuffer spareTarget;
     int faceSize = 0;
-    bool withDistance =
-        false;  ///< of the tree at hand: some mirror is rough, and way lengths add up through all
-
-    void look(const ReflectionTree& tree) {
-        withDistance = false;
-        for (const ReflectionNode& n : tree.nodes) withDistance = withDistance || rough(n);
-    }
-    bool rough(const ReflectionNode& node) const {
-        return options.gloss && node.planar() && node.roughness > 0 &&
-               node.view.projection == Projection::perspective;
-    }
-
-    Image draw(const ReflectionTree& tree, const ReflectionNode& node, MirrorScene& scene) {
-        if (node.level >= levels.size()) levels.resize(node.level + 1);
-        gl::MirrorLevel& level = levels[node.level];
-        const glm::ivec2 needed =
-            node.level < tree.levelSize.size() ? tree.levelSize[node.level] : node.resolution;
-        level.require(glm::max(needed, node.resolution), glFormat(options.format), withDistance);
-        Image image;
-        image.node = &node;
-        image.crop = node.crop;
-        image.target.framebuffer = level.framebuffer.name();
-        image.target.viewport = {glm::ivec2(0), node.resolution};
-        image.target.scissor = node.scissor;
-        image.target.withDistance = level.withDistance();
-        image.target.mirrored = node.view.mirrored();
-        bind(image.target);
-        clearDepth();
-        scene.drawNode(tree, node, image.target);
-        ++counters.images;
-        counters.texels += static_cast<std::uint64_t>(node.scissor.area());
-        return image;
-    }
-
-    void apply(const ReflectionTree& tree, const ReflectionNode& node, MirrorScene& scene,
-               const Image& parent) {
-        const gl::MirrorLevel& level = levels[node.level];
-        MirrorMap map;
-        map.colour = level.colour.name();
-        map.texels = glm::vec2(level.size());
-        if (level.withDistance()) map.distance = level.distance.name();
-        const glm::dvec2 pixels(glm::max(parent.target.viewport.size(), glm::ivec2(1)));
-        // Fragment of the parent's target -> its whole image -> what of it the map shows -> texture.
-        const glm::dvec2 part = glm::dvec2(node.resolution) / glm::dvec2(level.size());
-        const glm::dvec2 scale = parent.crop.size() / pixels / node.crop.size() * part;
-        const glm::dvec2 offset = (parent.crop.low - node.crop.low) / node.crop.size() * part -
-                                  glm::dvec2(parent.target.viewport.low) * scale;
-        map.uvFromFragment = glm::vec4(scale, offset);
-        const glm::dvec2 texel = 1.0 / glm::dvec2(level.size());
-        map.uvLimits = glm::vec4(0.5 * texel, (glm::dvec2(node.resolution) - 0.5) * texel);
-        map.texelsPerPixel = static_cast<float>(scale.y * level.size().y);
-        if (rough(node)) {
-            const double texelsPerRadian = 0.5 * std::max(node.clipFromView[0][0] * node.resolution.x,
-                                                          node.clipFromView[1][1] * node.resolution.y);
-            map.blurLevels = blur.blur(level, node, glossAngle(node.roughness) * texelsPerRadian);
-            map.blurred = blur.pyramid().name();
-            map.blurredScale = glm::vec2(level.size()) / glm::vec2(blur.size());
-            ++counters.filtered;
-        }
-        bind(parent.target);
-        scene.applyNode(tree, node, map, parent.node, parent.target);
-    }
+    std::uint64_t faceTexels = 0;
 
     /// Takes steps from `at` on while they belong into `image`; a node's own steps are taken inside it.
     std::size_t run(const ReflectionTree& tree, std::span<const ReflectionStep> steps, std::size_t at,
-                    MirrorScene& scene, const Image& image) {
+                    MirrorScene& scene, const MirrorImage& image) {
         while (at < steps.size() && steps[at].what == ReflectionStep::What::draw) {
-            const ReflectionNode& node = tree.nodes[steps[at].node];
-            const Image below = draw(tree, node, scene);
+            const AtlasGroup::Place place{steps[at].node, glm::ivec2(0)};
+            const ReflectionNode& node = tree.nodes[place.node];
+            maps.require(node.level, glm::max(tree.levelSize[node.level], node.resolution));
+            const MirrorImage below = maps.draw(tree, node, scene, place.origin, false);
             at = run(tree, steps, at + 1, scene, below);
-            apply(tree, node, scene, image);
+            scene.finishNode(tree, node, below.target);
+            maps.filter(tree, std::span(&place, 1));
+            maps.apply(tree, node, scene, place.origin, image);
             ++at;
         }
         return at;
+    }
+
+    /// Draws a group's maps, the deepest level first.
+    void make(const ReflectionTree& tree, const ReflectionChildren& children, const AtlasGroup& group,
+              MirrorScene& scene, std::vector<glm::ivec2>& origins) {
+        const std::uint32_t first = tree.nodes[group.tops.front()].level;
+        for (std::size_t k = group.levels.size(); k-- > 0;) {
+            const AtlasGroup::Level& level = group.levels[k];
+            const auto index = first + static_cast<std::uint32_t>(k);
+            maps.require(index, level.size);
+            const bool outlined = std::ranges::all_of(level.places, [&](const AtlasGroup::Place& p) {
+                return tree.nodes[p.node].outlineCount > 0;
+            });
+            maps.clear(index, outlined);
+            for (const AtlasGroup::Place& p : level.places) {
+                origins[p.node] = p.origin;
+                const ReflectionNode& node = tree.nodes[p.node];
+                const bool cleared = outlined == (node.outlineCount > 0);
+                const MirrorImage image = maps.draw(tree, node, scene, p.origin, cleared);
+                for (const std::uint32_t child : children.ofNode[p.node])
+                    maps.apply(tree, tree.nodes[child], scene, origins[child], image);
+                scene.finishNode(tree, node, image.target);
+            }
+            maps.filter(tree, level.places);
+        }
+    }
+
+    /// The reflections met in an image, with as few changes of target as their maps' size allows.
+    void runTogether(const ReflectionTree& tree, const ReflectionChildren& children,
+                     const std::vector<std::uint32_t>& tops, MirrorScene& scene, const MirrorImage& image) {
+        std::vector<glm::ivec2> origins(tree.nodes.size(), glm::ivec2(0));
+        for (const AtlasGroup& group : atlasGroups(tree, children, tops, limits())) {
+            if (group.fits) {
+                make(tree, children, group, scene, origins);
+            } else {
+                const AtlasGroup::Place place{group.tops.front(), glm::ivec2(0)};
+                const ReflectionNode& node = tree.nodes[place.node];
+                maps.require(node.level, node.resolution);
+                const MirrorImage below = maps.draw(tree, node, scene, place.origin, false);
+                runTogether(tree, children, children.ofNode[place.node], scene, below);
+                scene.finishNode(tree, node, below.target);
+                maps.filter(tree, std::span(&place, 1));
+            }
+            for (const std::uint32_t top : group.tops)
+                maps.apply(tree, tree.nodes[top], scene, origins[top], image);
+        }
+    }
+    AtlasLimits limits() const {
+        AtlasLimits most;
+        most.most = glm::ivec2(options.largestAtlas);
+        return most;
+    }
+
+    MirrorImage startFace(const ReflectionTree& tree, const ReflectionRoot& root, MirrorScene& scene) {
+        spareTarget.attachLayer(GL_COLOR_ATTACHMENT0, spare.name(), static_cast<int>(root.face));
+        MirrorImage image;
+        image.target.framebuffer = spareTarget.name();
+        image.target.viewport = image.target.scissor = {glm::ivec2(0), root.size};
+        image.target.mirrored = root.view.mirrored();
+        gl::bind(image.target);
+        clearDepth();
+        scene.drawFace(tree, root, image.target);
+        ++counters.faces;
+        faceTexels += static_cast<std::uint64_t>(image.target.scissor.area());
+        return image;
+    }
+
+    /// All faces of a reflector's map, their reflections together where these fit.
+    void facesTogether(const ReflectionTree& tree, const ReflectionChildren& children,
+                       const EnvironmentJob& job, MirrorScene& scene) {
+        std::vector<std::uint32_t> tops;
+        for (std::uint32_t r = job.firstRoot; r < job.firstRoot + job.rootCount; ++r)
+            tops.insert(tops.end(), children.ofRoot[r].begin(), children.ofRoot[r].end());
+        const std::vector<AtlasGroup> groups = atlasGroups(tree, children, tops, limits());
+        const bool one = groups.empty() || (groups.size() == 1 && groups.front().fits);
+        std::vector<glm::ivec2> origins(tree.nodes.size(), glm::ivec2(0));
+        if (one && !groups.empty()) make(tree, children, groups.front(), scene, origins);
+        for (std::uint32_t r = job.firstRoot; r < job.firstRoot + job.rootCount; ++r) {
+            const MirrorImage image = startFace(tree, tree.roots[r], scene);
+            if (!one) runTogether(tree, children, children.ofRoot[r], scene, image);
+            if (one)
+                for (const std::uint32_t top : children.ofRoot[r])
+                    maps.apply(tree, tree.nodes[top], scene, origins[top], image);
+            scene.finishFace(tree, tree.roots[r], image.target);
+        }
+    }
+
+    void publish(const EnvironmentJob& job, MirrorScene& scene) {
+        // What was shown so far becomes the next one to be drawn.
+        std::swap(environments[job.curved], spare);
+        scene.publish(job, environments[job.curved].name());
     }
 
     void requireSpare(int size) {
@@ -150,23 +154,20 @@ struct MirrorPass::Impl {
             spareTarget.attach(GL_DEPTH_ATTACHMENT, spareDepth.name());
         }
         if (spare) return;
-        spare = cube ? gl::Texture::cube(glFormat(options.format), size)
-                     : gl::Texture::array2D(glFormat(options.format), size, size, 2);
+        spare = cube ? gl::Texture::cube(gl::glFormat(options.format), size)
+                     : gl::Texture::array2D(gl::glFormat(options.format), size, size, 2);
         spare.filter(GL_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
     }
 
     void count() {
-        counters.mapBytes = counters.depthBytes = 0;
-        for (const gl::MirrorLevel& l : levels) {
-            if (!l.colour) continue;
-            counters.mapBytes += l.texels() * bytesOf(options.format);
-            counters.depthBytes += l.texels() * (l.withDistance() ? 8u : 4u);
-        }
-        counters.blurBytes = blur.bytes();
+        maps.count(counters);
+        counters.images = maps.drawn.images;
+        counters.filtered = maps.drawn.filtered;
+        counters.texels = maps.drawn.texels + faceTexels;
         const std::uint64_t face =
             static_cast<std::uint64_t>(faceSize) * static_cast<std::uint64_t>(faceSize);
         const std::uint64_t map =
-            face * bytesOf(options.format) * (options.environments == CurvedMaps::cube ? 6u : 2u);
+            face * gl::bytesOf(options.format) * (options.environments == CurvedMaps::cube ? 6u : 2u);
         counters.environmentBytes = 0;
         for (const gl::Texture& t : environments)
             if (t) counters.environmentBytes += map;
@@ -174,43 +175,44 @@ struct MirrorPass::Impl {
     }
 };
 
-MirrorPass::MirrorPass(const MirrorPassOptions& options) : impl_(std::make_unique<Impl>()) {
-    impl_->options = options;
-}
+MirrorPass::MirrorPass(const MirrorPassOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 MirrorPass::~MirrorPass() = default;
 MirrorPass::MirrorPass(MirrorPass&&) noexcept = default;
 MirrorPass& MirrorPass::operator=(MirrorPass&&) noexcept = default;
 
 void MirrorPass::drawEnvironments(const ReflectionTree& tree, MirrorScene& scene, std::size_t curved) {
     Impl& my = *impl_;
+    if (tree.environments.empty()) return;
+    my.maps.look(tree);
+    const auto prepare = [&](const EnvironmentJob& job) {
+        my.requireSpare(tree.roots[job.firstRoot].size.x);
+        my.environments.resize(
+            std::max(my.environments.size(), std::max<std::size_t>(curved, job.curved + 1)));
+    };
+    if (my.options.together) {
+        const ReflectionChildren children(tree);
+        for (const EnvironmentJob& job : tree.environments) {
+            prepare(job);
+            my.facesTogether(tree, children, job, scene);
+            my.publish(job, scene);
+        }
+        my.count();
+        return;
+    }
     const std::vector<ReflectionStep> steps = tree.environmentSteps();
-    my.look(tree);
-    std::size_t at = 0;
+    std::size_t at = 0, job = 0;
     while (at < steps.size()) {
         const ReflectionStep& step = steps[at];
         if (step.what == ReflectionStep::What::publish) {
-            const EnvironmentJob& job = tree.environments[step.node];
-            // What was shown so far becomes the next one to be drawn.
-            std::swap(my.environments[job.curved], my.spare);
-            scene.publish(job, my.environments[job.curved].name());
-            ++at;
+            my.publish(tree.environments[step.node], scene);
+            ++at, ++job;
             continue;
         }
+        prepare(tree.environments[job]);
         const ReflectionRoot& root = tree.roots[step.node];
-        my.requireSpare(root.size.x);
-        my.environments.resize(
-            std::max(my.environments.size(), std::max<std::size_t>(curved, root.curved + 1)));
-        my.spareTarget.attachLayer(GL_COLOR_ATTACHMENT0, my.spare.name(), static_cast<int>(root.face));
-        Impl::Image image;
-        image.target.framebuffer = my.spareTarget.name();
-        image.target.viewport = image.target.scissor = {glm::ivec2(0), root.size};
-        image.target.mirrored = root.view.mirrored();
-        bind(image.target);
-        clearDepth();
-        scene.drawFace(tree, root, image.target);
-        ++my.counters.faces;
-        my.counters.texels += static_cast<std::uint64_t>(image.target.scissor.area());
+        const gl::MirrorImage image = my.startFace(tree, root, scene);
         at = my.run(tree, steps, at + 1, scene, image);
+        scene.finishFace(tree, root, image.target);
     }
     my.count();
 }
@@ -218,13 +220,21 @@ void MirrorPass::drawEnvironments(const ReflectionTree& tree, MirrorScene& scene
 void MirrorPass::drawReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene,
                                  const MirrorTarget& target) {
     Impl& my = *impl_;
-    const std::vector<ReflectionStep> steps = tree.stepsOf(root);
-    if (steps.empty()) return;
-    my.look(tree);
-    Impl::Image image;
+    if (root >= tree.roots.size()) return;
+    gl::MirrorImage image;
     image.target = target;
-    my.run(tree, steps, 0, scene, image);
-    bind(target);
+    if (my.options.together) {
+        const ReflectionChildren children(tree);
+        if (children.ofRoot[root].empty()) return;
+        my.maps.look(tree);
+        my.runTogether(tree, children, children.ofRoot[root], scene, image);
+    } else {
+        const std::vector<ReflectionStep> steps = tree.stepsOf(root);
+        if (steps.empty()) return;
+        my.maps.look(tree);
+        my.run(tree, steps, 0, scene, image);
+    }
+    gl::bind(target);
     my.count();
 }
 
@@ -233,15 +243,12 @@ std::uint32_t MirrorPass::environment(std::size_t curved) const {
 }
 
 void MirrorPass::trim(const ReflectionTree& tree) {
-    Impl& my = *impl_;
-    if (my.levels.size() > tree.levelSize.size()) my.levels.resize(tree.levelSize.size());
-    if (tree.levelSize.empty()) my.blur.release();
-    my.count();
+    impl_->maps.keep(tree.levelSize.size());
+    impl_->count();
 }
 
 void MirrorPass::release() {
-    impl_->levels.clear();
-    impl_->blur.release();
+    impl_->maps.keep(0);
     impl_->environments.clear();
     impl_->spare = gl::Texture();
     impl_->spareDepth = gl::Texture();
@@ -257,6 +264,8 @@ const MirrorPassCounters& MirrorPass::counters() const {
 void MirrorPass::resetCounters() {
     MirrorPassCounters fresh;
     std::swap(impl_->counters, fresh);
+    impl_->maps.drawn = {};
+    impl_->faceTexels = 0;
     impl_->count();
 }
 

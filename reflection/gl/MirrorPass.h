@@ -18,6 +18,10 @@ struct MirrorPassOptions {
     MirrorFormat format = MirrorFormat::r11g11b10f;
     /// Rough mirrors are filtered; false: all mirrors are drawn as smooth ones, without distance or blur.
     bool gloss = true;
+    /// Maps of a level side by side in one texture, the deepest level first (AtlasGroup): a change of target
+    /// a level in place of two a map, for the memory of all maps of a frame. False: the paper's order.
+    bool together = false;
+    int largestAtlas = 4096;  ///< texels of that texture's side; what does not fit is drawn in turn
     CurvedMaps environments =
         CurvedMaps::cube;  ///< what `publish` hands out: cube maps or pairs of paraboloids
 };

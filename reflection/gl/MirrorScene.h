@@ -54,9 +54,20 @@ class MirrorScene {
     virtual void applyNode(const ReflectionTree& tree, const ReflectionNode& node, const MirrorMap& map,
                            const ReflectionNode* parent, const MirrorTarget& target) = 0;
 
+    /// The node's reflections have been drawn into its image: what is to be drawn last, a sky, where it would
+    /// otherwise be drawn behind mirrors in vain.
+    virtual void finishNode(const ReflectionTree& tree, const ReflectionNode& node,
+                            const MirrorTarget& target) {
+        (void)tree, (void)node, (void)target;
+    }
+
     /// Draws a face of an environment map, all but the mirrors met in it. Only with view-independent maps.
     virtual void drawFace(const ReflectionTree& tree, const ReflectionRoot& face,
                           const MirrorTarget& target) {
+        (void)tree, (void)face, (void)target;
+    }
+    virtual void finishFace(const ReflectionTree& tree, const ReflectionRoot& face,
+                            const MirrorTarget& target) {
         (void)tree, (void)face, (void)target;
     }
     /// The map of a curved reflector is complete: from now on this texture is to be sampled for it.

@@ -49,36 +49,35 @@ ReflectionTree reflectionTree(std::span<const TreeView> views, const ReflectionS
     return tree;
 }
 
+ReflectionChildren::ReflectionChildren(const ReflectionTree& tree)
+    : ofRoot(tree.roots.size()), ofNode(tree.nodes.size()) {
+    for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
+        const ReflectionNode& node = tree.nodes[n];
+        (node.parent == ReflectionNode::none ? ofRoot[node.root] : ofNode[node.parent]).push_back(n);
+    }
+}
+
 namespace {
 
-/// For each image, the nodes met in it, in order.
-struct Children {
-    explicit Children(const ReflectionTree& tree) : ofRoot(tree.roots.size()), ofNode(tree.nodes.size()) {
-        for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
-            const ReflectionNode& node = tree.nodes[n];
-            (node.parent == ReflectionNode::none ? ofRoot[node.root] : ofNode[node.parent]).push_back(n);
-        }
+void emit(const ReflectionChildren& children, const std::vector<std::uint32_t>& met,
+          std::vector<ReflectionStep>& steps) {
+    for (std::uint32_t n : met) {
+        steps.push_back({ReflectionStep::What::draw, n});
+        emit(children, children.ofNode[n], steps);
+        steps.push_back({ReflectionStep::What::apply, n});
     }
-    void emit(const std::vector<std::uint32_t>& met, std::vector<ReflectionStep>& steps) const {
-        for (std::uint32_t n : met) {
-            steps.push_back({ReflectionStep::What::draw, n});
-            emit(ofNode[n], steps);
-            steps.push_back({ReflectionStep::What::apply, n});
-        }
-    }
-    std::vector<std::vector<std::uint32_t>> ofRoot, ofNode;
-};
+}
 
 }  // namespace
 
 std::vector<ReflectionStep> ReflectionTree::environmentSteps() const {
-    const Children children(*this);
+    const ReflectionChildren children(*this);
     std::vector<ReflectionStep> steps;
     for (std::uint32_t j = 0; j < environments.size(); ++j) {
         const EnvironmentJob& job = environments[j];
         for (std::uint32_t r = job.firstRoot; r < job.firstRoot + job.rootCount; ++r) {
             steps.push_back({ReflectionStep::What::face, r});
-            children.emit(children.ofRoot[r], steps);
+            emit(children, children.ofRoot[r], steps);
         }
         steps.push_back({ReflectionStep::What::publish, j});
     }
@@ -88,8 +87,8 @@ std::vector<ReflectionStep> ReflectionTree::environmentSteps() const {
 std::vector<ReflectionStep> ReflectionTree::stepsOf(std::uint32_t root) const {
     std::vector<ReflectionStep> steps;
     if (root >= roots.size()) return steps;
-    const Children children(*this);
-    children.emit(children.ofRoot[root], steps);
+    const ReflectionChildren children(*this);
+    emit(children, children.ofRoot[root], steps);
     return steps;
 }
 

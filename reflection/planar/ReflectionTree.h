@@ -23,12 +23,16 @@ enum class CurvedMaps : std::uint8_t {
     dualParaboloid
 };
 
-/// What may be left out, each by itself. All on: the least work. `paper()`: what the authors' program did.
+/// What may be left out, each by itself. As they are: the least work. `paper()`: what the authors' program
+/// did.
 struct Economies {
     bool backFacing = true;  ///< mirrors seen from behind
     bool offScreen = true;   ///< mirrors, curved reflectors and objects outside what a view sees
     bool narrow = true;      ///< a mirror view sees through its mirror's polygon, not through the whole image
-    bool scissor = true;     ///< pixels outside the mirror's projection are not drawn
+    bool scissor = true;     ///< pixels outside the mirror's bounds in the image are not drawn
+    /// Nor those inside the bounds that its polygon does not cover: each map is masked first. Off: a mask
+    /// costs a pass over the bounds, which pays only where shading is dear.
+    bool outline = false;
     bool resolution =
         true;            ///< a map has as many texels as its mirror covers pixels, times `levelScale` ^ level
     bool detail = true;  ///< coarser levels of detail at depth
@@ -37,7 +41,9 @@ struct Economies {
     bool cutOff = true;     ///< branches whose product of reflectances falls below `cutOff`
     bool cap = true;        ///< at most `mostMaps`, the least visible left out
 
-    static Economies paper() { return {true, false, false, false, false, false, false, false, false, false}; }
+    static Economies paper() {
+        return {true, false, false, false, false, false, false, false, false, false, false};
+    }
 };
 
 struct TreeSettings {
@@ -99,7 +105,9 @@ struct ReflectionNode {
     NdcRect crop;              ///< part of the whole image that the map's `resolution` texels show
     glm::ivec2 resolution{0};  ///< texels of the level's map in use, from its lower left corner
     PixelRect scissor;         ///< of them, those worth drawing
-    NdcRect bounds;            ///< of the mirrors in the parent's image; whole for curved
+    /// Of these, those that the mirrors' polygons cover, with a margin: ReflectionTree::outlinesOf. 0: all.
+    std::uint32_t firstOutline = 0, outlineCount = 0;
+    NdcRect bounds;       ///< of the mirrors in the parent's image; whole for curved
     double pixels = 0;    ///< that its mirrors cover in the caller's view, before occlusion: an upper bound
     float roughness = 0;  ///< its mirrors' largest
     glm::vec3 throughput{1};    ///< product of reflectances on the way to the eye, its own included
@@ -162,6 +170,7 @@ struct ReflectionTree {
     std::vector<ReflectionNode> nodes;  ///< depth first; a parent before its children
     std::vector<EnvironmentJob> environments;
     std::vector<std::uint32_t> mirrors, objects;
+    std::vector<glm::vec2> outlines;  ///< corners of triangles, ndc of a node's whole image (not of its crop)
     std::vector<glm::ivec2> levelSize;  ///< texels each level's map needs: as many maps as levels in use
     TreeCounters counters;
 
@@ -172,6 +181,10 @@ struct ReflectionTree {
     std::span<const std::uint32_t> objectsOf(const Image& image) const {
         return std::span(objects).subspan(image.firstObject, image.objectCount);
     }
+    /// Triangles, three corners each, that hold everything a node's mirrors show.
+    std::span<const glm::vec2> outlinesOf(const ReflectionNode& n) const {
+        return std::span(outlines).subspan(n.firstOutline, n.outlineCount);
+    }
     bool empty() const { return nodes.empty() && environments.empty(); }
 
     /// The steps before the caller's views: environment maps.
@@ -181,6 +194,12 @@ struct ReflectionTree {
     /// Bytes of all levels' maps at so many a texel, and of environment maps (one of each; a second one where
     /// the map is replaced only when complete is the executor's).
     std::uint64_t planarBytes(std::uint32_t bytesPerTexel = 4) const;
+};
+
+/// For each image, the nodes met in it, in order.
+struct ReflectionChildren {
+    explicit ReflectionChildren(const ReflectionTree& tree);
+    std::vector<std::vector<std::uint32_t>> ofRoot, ofNode;
 };
 
 /// Lists the reflections of a frame. Deterministic; no graphics API. Mirrors are met in the order given,

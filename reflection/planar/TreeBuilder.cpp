@@ -6,6 +6,7 @@
 
 #include "reflection/planar/Gloss.h"
 #include "reflection/planar/MirrorView.h"
+#include "reflection/planar/Outline.h"
 
 namespace reflection {
 
@@ -56,8 +57,11 @@ bool hides(const city::Aabb& box, const glm::dvec3& eye, const HalfSpace* glass,
 TreeBuilder::TreeBuilder(const ReflectionScene& scene, const TreeSettings& settings, ReflectionTree& tree)
     : scene_(scene), settings_(settings), tree_(tree) {}
 
-glm::ivec2 TreeBuilder::gridOf(const glm::ivec2& size) const {
-    return settings_.mapSize.x > 0 && settings_.mapSize.y > 0 ? settings_.mapSize : size;
+glm::ivec2 TreeBuilder::gridOf(const ReflectionRoot& root) const {
+    if (settings_.mapSize.x <= 0 || settings_.mapSize.y <= 0) return root.size;
+    // More than twice an image's pixels are worth nothing; fewer than given cost up to 28 dB in curved
+    // mirrors.
+    return settings_.economies.resolution ? glm::min(settings_.mapSize, 2 * root.size) : settings_.mapSize;
 }
 
 bool TreeBuilder::dark(const glm::vec3& throughput) const {
@@ -105,7 +109,7 @@ void TreeBuilder::addView(const TreeView& given) {
     image.view = &root.view;
     image.frustum = &root.frustum;
     image.pixelsPerNdc = area(given.size) / 4;
-    image.grid = gridOf(given.size);
+    image.grid = gridOf(root);
     meet(image);
 }
 
@@ -158,7 +162,7 @@ void TreeBuilder::addEnvironments() {
             image.throughput = reflector.surface.reflectance;
             image.pixelsPerNdc = area(root.size) / 4;
             image.hiddenCurved = c;
-            image.grid = gridOf(root.size);
+            image.grid = gridOf(root);
             image.coarser = settings_.economies.detail ? 1 : 0;
             meet(image);
             ++tree_.counters.faces;
@@ -212,6 +216,11 @@ bool TreeBuilder::see(const Image& image, std::uint32_t index, Seen& seen) {
         ++counters.belowCutOff;
         return false;
     }
+    if (economies.outline && image.view->projection == Projection::perspective &&
+        seen.portal.status == PortalStatus::ok) {
+        seen.outlines = {projected(*image.view, seen.portal.polygon)};
+        if (seen.outlines.front().empty()) seen.outlines.clear();
+    }
     seen.mirrored = mirrored.view;
     seen.mirrors = {index};
     seen.group = economies.share ? mirror.group : Mirror::alone;
@@ -235,6 +244,10 @@ void TreeBuilder::meetMirrors(const Image& image) {
         companion->portal.bounds.low = glm::min(companion->portal.bounds.low, seen.portal.bounds.low);
         companion->portal.bounds.high = glm::max(companion->portal.bounds.high, seen.portal.bounds.high);
         companion->portal.area += seen.portal.area;
+        if (seen.outlines.empty() || companion->outlines.empty())
+            companion->outlines.clear();
+        else
+            companion->outlines.push_back(std::move(seen.outlines.front()));
     }
     for (Seen& seen : all) addMirror(image, seen);
 }
@@ -306,12 +319,29 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         drawn.clipFromView = node.clipFromView;
         node.obliqueClipFromView = obliqueNear(drawn, plane).clipFromView;
     }
+    // The filter of a rough mirror reaches farther than any polygon.
+    if (roughness <= 0)
+        outline(node, seen, image.grid,
+                texelsArePixels ? 1 : 2 / std::pow(settings_.levelScale, image.level));
     candidate.mirrors = std::move(seen.mirrors);
     push(std::move(candidate));
 }
 
+void TreeBuilder::outline(ReflectionNode& node, const Seen& seen, const glm::ivec2& grid, double margin) {
+    if (seen.outlines.empty()) return;
+    node.firstOutline = static_cast<std::uint32_t>(tree_.outlines.size());
+    const glm::dvec2 texels = 0.5 * glm::dvec2(grid);
+    for (const std::vector<glm::dvec2>& polygon : seen.outlines) {
+        const std::vector<glm::dvec2> wider = widened(polygon, texels, margin);
+        for (std::size_t i = 2; i < wider.size(); ++i)
+            for (const glm::dvec2& p : {wider[0], wider[i - 1], wider[i]}) tree_.outlines.emplace_back(p);
+    }
+    node.outlineCount = static_cast<std::uint32_t>(tree_.outlines.size()) - node.firstOutline;
+}
+
 void TreeBuilder::meetCurved(const Image& image) {
-    const glm::ivec2 whole = gridOf(glm::ivec2(2 * settings_.faceSize));
+    const bool given = settings_.mapSize.x > 0 && settings_.mapSize.y > 0;
+    const glm::ivec2 whole = given ? settings_.mapSize : glm::ivec2(2 * settings_.faceSize);
     for (std::uint32_t c = 0; c < scene_.curved.size(); ++c) {
         if (c == image.hiddenCurved) continue;
         const CurvedReflector& reflector = scene_.curved[c];
@@ -404,7 +434,7 @@ void TreeBuilder::take(Candidate&& candidate) {
         // A mirror view has the pixels of the image in which the mirror is met.
         std::uint32_t up = node.parent;
         while (up != ReflectionNode::none && tree_.nodes[up].planar()) up = tree_.nodes[up].parent;
-        image.grid = up != ReflectionNode::none ? tree_.nodes[up].resolution : gridOf(root.size);
+        image.grid = up != ReflectionNode::none ? tree_.nodes[up].resolution : gridOf(root);
         image.pixelsPerNdc = (up != ReflectionNode::none ? tree_.nodes[up].pixels : area(root.size)) / 4;
     } else {
         image.grid = node.resolution;

@@ -51,6 +51,7 @@ class TreeBuilder {
         Portal portal;
         EyeView mirrored;
         std::uint32_t group = Mirror::alone;
+        std::vector<std::vector<glm::dvec2>> outlines;  ///< of each mirror, ndc; none where unknown
     };
 
     void meet(const Image& image);
@@ -59,11 +60,12 @@ class TreeBuilder {
     bool see(const Image& image, std::uint32_t index, Seen& seen);
     bool occluded(const Image& image, const Portal& portal, const Mirror& mirror) const;
     void addMirror(const Image& image, Seen& seen);
+    void outline(ReflectionNode& node, const Seen& seen, const glm::ivec2& grid, double margin);
     void push(Candidate&& candidate);
     void take(Candidate&& candidate);
     void listObjects(const EyeView& view, const HalfSpaces& frustum, std::uint32_t& first,
                      std::uint32_t& count);
-    glm::ivec2 gridOf(const glm::ivec2& size) const;
+    glm::ivec2 gridOf(const ReflectionRoot& root) const;
     bool dark(const glm::vec3& throughput) const;
     bool shows(const CurvedReflector& c, const EyeView& view, const HalfSpaces& frustum) const;
 
