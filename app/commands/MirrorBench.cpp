@@ -306,11 +306,20 @@ MirrorRows curvedError(const MirrorWorld& given, const MirrorBenchOptions& optio
     out.table.push_back({"maps", "PSNR on curved, dB", "PSNR of the picture, dB"});
     const reflection::TreeView view = world.view(options.size);
     const TracedPicture truth = MirrorTruth(world).picture(view, {.depth = 8, .samples = 32});
-    for (const auto& [name, curved] :
-         {std::pair{"none", CurvedMaps::none}, std::pair{"view dependent", CurvedMaps::viewDependent},
-          std::pair{"cube", CurvedMaps::cube}, std::pair{"paraboloids", CurvedMaps::dualParaboloid}}) {
+    struct Case {
+        const char* name;
+        CurvedMaps curved;
+        bool nearness = false;
+    };
+    for (const auto& [name, curved, nearness] :
+         {Case{"none", CurvedMaps::none}, Case{"view dependent", CurvedMaps::viewDependent},
+          Case{"cube", CurvedMaps::cube}, Case{"paraboloids", CurvedMaps::dualParaboloid},
+          Case{"cube, parallax", CurvedMaps::cube, true},
+          Case{"paraboloids, parallax", CurvedMaps::dualParaboloid, true}}) {
         if (options.stop()) return out;
-        MirrorStage stage(world, options.size, curved);
+        reflection::MirrorPassOptions how;
+        how.nearness = nearness;
+        MirrorStage stage(world, options.size, curved, how);
         TreeSettings settings;
         settings.depth = std::max(world.depth, 3);
         settings.mostMaps = 4096;

@@ -15,7 +15,7 @@ using reflection::MirrorTarget;
 struct MirrorStage::Impl {
     Impl(const MirrorWorld& w, glm::ivec2 s, reflection::CurvedMaps c,
          const reflection::MirrorPassOptions& options)
-        : world(w), size(s), curved(c), arrays(w), renderer(w, c), pass(options) {
+        : world(w), size(s), curved(c), arrays(w), renderer(w, c, options.nearness), pass(options) {
         colour = gl::Texture::image2D(GL_RGBA16F, size.x, size.y);
         depth = gl::Texture::image2D(GL_DEPTH32F_STENCIL8, size.x, size.y);
         framebuffer = gl::Framebuffer::create();

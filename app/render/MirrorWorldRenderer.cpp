@@ -67,7 +67,12 @@ LitMesh meshOf(const MirrorWorld::Flat& flat, const glm::vec3& colour) {
 }  // namespace
 
 struct MirrorWorldRenderer::Impl {
-    Impl(const MirrorWorld& w, CurvedMaps c) : world(w), curvedMaps(c), plain(geometryOf(0)) {
+    Impl(const MirrorWorld& w, CurvedMaps c, bool p)
+        : world(w), curvedMaps(c), parallax(p), plain(geometryOf(0)) {
+        if (parallax) {
+            cube = Kind({"CUBE", "PARALLAX"});
+            pair = Kind({"PAIR", "PARALLAX"});
+        }
         if (c == CurvedMaps::dualParaboloid) {
             // An edge may bend by some hundredths of its length at a distance of as much.
             fine.emplace(geometryOf(0.25f));
@@ -133,6 +138,7 @@ struct MirrorWorldRenderer::Impl {
         p.set("clipFromRelative", glm::mat4(clipFromView * glm::dmat4(view.viewFromWorld)));
         p.set("viewFromRelative", glm::mat3(view.viewFromWorld));
         p.set("nearPlane", static_cast<float>(clipFromView[3][2]));
+        p.set("keepNearness", parallax && face ? 1 : 0);
         p.set("glass", oblique ? glm::vec4(0, 0, 0, 1) : glm::vec4(glass));
         p.use();
         return p;
@@ -202,6 +208,7 @@ struct MirrorWorldRenderer::Impl {
                 glBindTextureUnit(8, environment[c]);
                 p.set("reflectance", world.curved[c].reflector.surface.reflectance);
                 p.set("tint", world.curved[c].tint);
+                p.set("mapCentre", glm::vec3(world.curved[c].reflector.centre - view.eye));
                 draw(g.curved[c]);
             }
         }
@@ -213,6 +220,7 @@ struct MirrorWorldRenderer::Impl {
         p.set("relativeFromView", glm::mat3(glm::transpose(view.viewFromWorld)));
         p.set("projection",
               glm::vec4(clipFromView[0][0], clipFromView[1][1], clipFromView[2][0], clipFromView[2][1]));
+        p.set("keepNearness", parallax && face ? 1 : 0);
         p.set("zenith", world.zenith);
         p.set("horizon", world.horizon);
         p.set("nadir", world.nadir);
@@ -226,6 +234,8 @@ struct MirrorWorldRenderer::Impl {
 
     const MirrorWorld& world;
     CurvedMaps curvedMaps;
+    bool parallax;
+    bool face = false;  ///< an environment map's is being drawn
     Geometry plain;
     std::optional<Geometry> fine;
     Kind matte{{"MATTE"}}, flat{{"FLAT"}}, rough{{"FLAT", "ROUGH"}}, sphere{{"VIEW"}}, cube{{"CUBE"}},
@@ -241,8 +251,8 @@ struct MirrorWorldRenderer::Impl {
     bool oblique = false;
 };
 
-MirrorWorldRenderer::MirrorWorldRenderer(const MirrorWorld& world, CurvedMaps curved)
-    : impl_(std::make_unique<Impl>(world, curved)) {}
+MirrorWorldRenderer::MirrorWorldRenderer(const MirrorWorld& world, CurvedMaps curved, bool parallax)
+    : impl_(std::make_unique<Impl>(world, curved, parallax)) {}
 MirrorWorldRenderer::~MirrorWorldRenderer() = default;
 
 void MirrorWorldRenderer::setOblique(bool oblique) {
@@ -253,6 +263,7 @@ void MirrorWorldRenderer::drawRoot(const ReflectionTree& tree, std::uint32_t roo
     const ReflectionRoot& r = tree.roots[root];
     glFrontFace(r.view.mirrored() ? GL_CW : GL_CCW);
     impl_->markRoot(tree, r);
+    impl_->face = false;
     impl_->drawImage(r.view, r.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(r), r.frustum, r.curved);
 }
 
@@ -260,6 +271,7 @@ void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionN
                                    const MirrorTarget&) {
     const auto index = static_cast<std::uint32_t>(&node - tree.nodes.data());
     impl_->markApplied(tree, [&](const ReflectionNode& n) { return n.parent == index; });
+    impl_->face = false;
     impl_->drawImage(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView, node.glass,
                      tree.objectsOf(node), node.frustum, node.hiddenCurved);
 }
@@ -267,19 +279,23 @@ void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionN
 void MirrorWorldRenderer::drawFace(const ReflectionTree& tree, const ReflectionRoot& face,
                                    const MirrorTarget&) {
     impl_->markRoot(tree, face);
+    impl_->face = true;
     impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(face), face.frustum,
                      face.curved);
 }
 
 void MirrorWorldRenderer::finishRoot(const ReflectionTree& tree, std::uint32_t root) {
+    impl_->face = false;
     impl_->drawSky(tree.roots[root].view, tree.roots[root].view.clipFromView);
 }
 
 void MirrorWorldRenderer::finishNode(const ReflectionTree&, const ReflectionNode& node, const MirrorTarget&) {
+    impl_->face = false;
     impl_->drawSky(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView);
 }
 
 void MirrorWorldRenderer::finishFace(const ReflectionTree&, const ReflectionRoot& face, const MirrorTarget&) {
+    impl_->face = true;
     impl_->drawSky(face.view, face.view.clipFromView);
 }
 
@@ -292,6 +308,7 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
                                     const MirrorTarget& target) {
     Impl& my = *impl_;
     my.setState();
+    my.face = parent == nullptr && tree.roots[node.root].isEnvironment();
     // The image in which the reflector is met.
     const EyeView& view = parent != nullptr ? parent->view : tree.roots[node.root].view;
     const glm::dmat4& clip = parent == nullptr ? view.clipFromView

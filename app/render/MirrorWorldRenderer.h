@@ -13,8 +13,9 @@ namespace app {
 /// out) show MirrorWorld::beyond.
 class MirrorWorldRenderer final : public reflection::MirrorScene {
   public:
-    /// `curved`: how curved reflectors mirror; paraboloids need finer triangles.
-    MirrorWorldRenderer(const MirrorWorld& world, reflection::CurvedMaps curved);
+    /// `curved`: how curved reflectors mirror; paraboloids need finer triangles. `parallax`: environment maps
+    /// keep distances (MirrorPassOptions::nearness) and are looked up where a ray ends.
+    MirrorWorldRenderer(const MirrorWorld& world, reflection::CurvedMaps curved, bool parallax = false);
     ~MirrorWorldRenderer() override;
 
     /// Everything but the sky and mirrors of which the tree has reflections in one of its roots; the target

@@ -1,6 +1,6 @@
 #version 450 core
 // MATTE: what the corners say. FLAT: a planar mirror with its map, ROUGH: blurred. Otherwise a curved reflector: VIEW: view-dependent map,
-// CUBE or PAIR: view-independent.
+// CUBE or PAIR: view-independent, PARALLAX: with distances in alpha.
 #if defined(FLAT)
 #include "mirror_map.glsl"
 #endif
@@ -27,8 +27,34 @@ uniform vec4 mapPart;          // of the texture in use: size, low corner
 uniform vec4 mapLimits;        // middles of its outermost texels
 #elif defined(CUBE)
 layout(binding = 8) uniform samplerCube map;
+vec4 mapTowards(vec3 direction) { return textureLod(map, direction, 0.0); }
 #elif defined(PAIR)
 layout(binding = 8) uniform sampler2DArray map;
+// Halves look along +z and -z: see paraboloidView.
+vec4 mapTowards(vec3 direction) {
+    vec3 r = normalize(direction);
+    bool up = r.z >= 0.0;
+    vec3 q = up ? vec3(r.x, -r.y, -r.z) : r;
+    return textureLod(map, vec3(0.5 + 0.5 * q.xy / (1.0 - q.z), up ? 0.0 : 1.0), 0.0);
+}
+#endif
+
+float greatest(vec3 v) {
+    vec3 a = abs(v);
+    return max(max(a.x, a.y), a.z);
+}
+uniform bool keepNearness;  // alpha is 1 / depth along the greatest axis, for parallax in environment maps
+
+#ifdef PARALLAX
+uniform vec3 mapCentre;  // relative to the eye
+float nearnessAlong(vec3 direction) { return greatest(direction) * mapTowards(direction).a; }
+
+// Where the map's centre sees what a ray from off the centre meets: as vehicle.frag does, by one secant, which is exact on planes.
+vec3 seenFromCentre(vec3 from, vec3 towards) {
+    float first = nearnessAlong(towards);
+    float second = nearnessAlong(towards + first * from);
+    return towards + first / max(2.0 - second / max(first, 1e-6), 0.25) * from;
+}
 #endif
 
 #ifdef FLAT
@@ -38,8 +64,9 @@ vec2 movement(vec3 v, vec3 e) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) *
 
 void main() {
     distanceOut = length(relative);
+    float alpha = keepNearness ? 1.0 / max(greatest(relative), 1e-6) : 1.0;
 #if defined(MATTE)
-    colourOut = vec4(colour, 1.0);
+    colourOut = vec4(colour, alpha);
 #else
     vec3 d = normalize(relative);
     vec3 light;
@@ -57,7 +84,11 @@ void main() {
 #else
     light = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
 #endif
-    if (addDistance) distanceOut = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
+    if (addDistance || keepNearness) {
+        float way = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
+        if (addDistance) distanceOut = way;
+        if (keepNearness) alpha = 1.0 / max(way * greatest(d), 1e-6);
+    }
 #else
     vec3 r = reflect(d, normalize(normal));
 #if defined(VIEW)
@@ -66,15 +97,13 @@ void main() {
     vec2 at = q.z < -1e-4 ? q.xy / -q.z * mapScale : normalize(q.xy + vec2(1e-9)) * 2.0;
     at *= min(1.0, 1.0 / max(length(at), 1e-9));
     light = textureLod(map, clamp((0.5 + 0.5 * at) * mapPart.xy + mapPart.zw, mapLimits.xy, mapLimits.zw), 0.0).rgb;
-#elif defined(CUBE)
-    light = textureLod(map, r, 0.0).rgb;
-#elif defined(PAIR)
-    // Halves look along +z and -z: see paraboloidView.
-    bool up = r.z >= 0.0;
-    vec3 q = up ? vec3(r.x, -r.y, -r.z) : r;
-    light = textureLod(map, vec3(0.5 + 0.5 * q.xy / (1.0 - q.z), up ? 0.0 : 1.0), 0.0).rgb;
+#else
+#ifdef PARALLAX
+    r = seenFromCentre(relative - mapCentre, r);
+#endif
+    light = mapTowards(r).rgb;
 #endif
 #endif
-    colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, 1.0);
+    colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, alpha);
 #endif
 }

@@ -143,6 +143,9 @@ struct MirrorPass::Impl {
         scene.publish(job, environments[job.curved].name());
     }
 
+    MirrorFormat environmentFormat() const {
+        return options.nearness ? MirrorFormat::rgba16f : options.format;
+    }
     void requireSpare(int size) {
         const bool cube = options.environments == CurvedMaps::cube;
         if (faceSize != size) {
@@ -154,8 +157,8 @@ struct MirrorPass::Impl {
             spareTarget.attach(GL_DEPTH_ATTACHMENT, spareDepth.name());
         }
         if (spare) return;
-        spare = cube ? gl::Texture::cube(gl::glFormat(options.format), size)
-                     : gl::Texture::array2D(gl::glFormat(options.format), size, size, 2);
+        const GLenum format = gl::glFormat(environmentFormat());
+        spare = cube ? gl::Texture::cube(format, size) : gl::Texture::array2D(format, size, size, 2);
         spare.filter(GL_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
     }
 
@@ -167,7 +170,7 @@ struct MirrorPass::Impl {
         const std::uint64_t face =
             static_cast<std::uint64_t>(faceSize) * static_cast<std::uint64_t>(faceSize);
         const std::uint64_t map =
-            face * gl::bytesOf(options.format) * (options.environments == CurvedMaps::cube ? 6u : 2u);
+            face * gl::bytesOf(environmentFormat()) * (options.environments == CurvedMaps::cube ? 6u : 2u);
         counters.environmentBytes = 0;
         for (const gl::Texture& t : environments)
             if (t) counters.environmentBytes += map;

@@ -22,6 +22,10 @@ struct MirrorPassOptions {
     /// a level in place of two a map, for the memory of all maps of a frame. False: the paper's order.
     bool together = false;
     int largestAtlas = 4096;  ///< texels of that texture's side; what does not fit is drawn in turn
+    /// Environment maps have an alpha channel of half floats in which the scene keeps 1 / depth (along the
+    /// greatest axis; 0: infinitely far), and mirrors' maps have distances, so that a curved mirror can be
+    /// looked up where a ray ends. False: the paper's, for which all lies infinitely far.
+    bool nearness = false;
     CurvedMaps environments =
         CurvedMaps::cube;  ///< what `publish` hands out: cube maps or pairs of paraboloids
 };

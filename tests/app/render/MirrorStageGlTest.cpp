@@ -159,6 +159,28 @@ TEST_F(MirrorStageGlTest, CurvedReflectorsComeNearWhatRaysSee) {
     EXPECT_GT(got[CurvedMaps::dualParaboloid], 24);
 }
 
+// Balls near a floor, walls and mirrors, seen in each other: where a ray ends matters.
+TEST_F(MirrorStageGlTest, CurvedReflectorsAreTruerWithDistances) {
+    for (const auto& [which, gain] : {std::pair{'b', 1.5}, std::pair{'c', 4.0}}) {
+        const MirrorWorld world = paperScene(which);
+        const TracedPicture truth = MirrorTruth(world).picture(world.view(size), {.depth = 8, .samples = 16});
+        for (CurvedMaps curved : {CurvedMaps::cube, CurvedMaps::dualParaboloid}) {
+            double got[2] = {};
+            for (bool nearness : {false, true}) {
+                reflection::MirrorPassOptions options;
+                options.nearness = nearness;
+                MirrorStage stage(world, size, curved, options);
+                TreeSettings settings;
+                settings.depth = 3;
+                settings.mostMaps = 1000;
+                for (int frame = 0; frame < 3; ++frame) stage.draw(settings);
+                got[nearness ? 1 : 0] = psnrOf(stage.read(), truth.radiance, size, truth.curved);
+            }
+            EXPECT_GT(got[1], got[0] + gain) << which;
+        }
+    }
+}
+
 TEST_F(MirrorStageGlTest, RoughMirrorsComeNearTheTruthAtEveryDepth) {
     const MirrorWorld world = facingWindows(0.15f);
     const MirrorTruth truth(world);
