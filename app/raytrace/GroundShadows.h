@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -18,9 +19,14 @@ class GroundShadows {
   public:
     GroundShadows(const FrameScene& frame, const RayMeshes& meshes, const RayShading& shading,
                   const View& view);
+    /// Those of all vehicles, for rays from anywhere.
+    GroundShadows(const FrameScene& frame, const RayMeshes& meshes, const RayShading& shading);
 
     /// Factor on display colours of what lies `distance` metres away in a direction (unit) from the eye.
     glm::vec3 factor(const glm::vec3& direction, float distance) const;
+    /// Factor on the radiance of what a ray meets after `distance` metres, as passes that draw radiance have
+    /// it. Of shadows that are not a view's alone.
+    glm::vec3 share(const glm::vec3& origin, const glm::vec3& direction, float distance) const;
 
   private:
     struct Rectangle {
@@ -33,7 +39,14 @@ class GroundShadows {
         float height = 0;
         glm::vec3 towardsSun{0};
     };
-    glm::vec3 factorAt(const Rectangle& rectangle, const glm::vec2& position, const glm::vec3& world) const;
+    /// Around `eye`; corners where they lie, not pulled.
+    static Rectangle rectangleOf(const vehicles::VehiclePose& pose, const VehicleLevels& model,
+                                 const glm::dvec3& eye, const glm::vec3& sun);
+    static void bound(Rectangle& rectangle);
+    /// Over the shadows that a ray meets; `before`: whether one at that distance counts.
+    glm::vec3 product(const glm::vec3& origin, const glm::vec3& direction,
+                      const std::function<bool(float)>& before) const;
+    glm::vec3 shareAt(const Rectangle& rectangle, const glm::vec2& position, const glm::vec3& world) const;
 
     const RayShading* shading_;
     std::vector<Rectangle> rectangles_;

@@ -15,6 +15,11 @@ constexpr float offSurface = 0.001f;
 
 }  // namespace
 
+void PixelRays::reflect(const glm::vec3& at, const glm::vec3& normal) {
+    apex -= 2 * glm::dot(normal, apex - at) * normal;
+    for (glm::vec3& d : through) d -= 2 * glm::dot(normal, d) * normal;
+}
+
 glm::vec3 mirrorStart(const glm::vec3& position, const glm::vec3& facing, const glm::vec3& direction) {
     // Interpolated normals may send a ray below its triangle, at outlines above all. It then starts below,
     // and leaves the body through the backs of its panels, which rays pass.
@@ -38,24 +43,29 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
     const float footprint = ray.width + ray.spread * hit.t;
     if (placed.kind == PlacedMesh::Kind::city) {
         const float cosine = glm::dot(triangle.facing(), ray.direction);
-        const auto pane = scene.glass ? shading.glass(placed, triangle, weights) : std::nullopt;
-        if (pane && cosine < 0) {
+        const PatternSampler::Level level =
+            ray.pixel.known ? shading.levelOf(triangle, ray.pixel.apex, ray.pixel.through, scene.filter)
+                            : shading.levelOf(triangle, footprint, cosine);
+        const auto pane =
+            scene.glass ? shading.glass(placed, triangle, weights, ray.direction) : std::nullopt;
+        if (pane) {
             const GlassShares shares = glassShares(pane->glass, -cosine);
             const glm::vec3 reflected = mirrorDirection(pane->normal, -ray.direction);
             sums[ray.sum] += ray.weight * shares.through *
-                             shading.city(placed, triangle, weights,
-                                          shading.levelOf(triangle, footprint, cosine), roomSky, roomSun);
+                             shading.city(placed, triangle, pane->weights, level, roomSky, roomSun);
             if (!mirrorAgain) {
                 sums[ray.sum] +=
                     ray.weight * shares.mirrored * meanSurroundings(shading.lighting(), reflected);
                 return;
             }
-            next_.push_back({triangle.at(weights) + pane->normal * city::paneOffset, reflected, footprint,
-                             ray.spread, ray.weight * shares.mirrored, ray.sum});
+            next_.push_back({pane->at, reflected, footprint, ray.spread, ray.weight * shares.mirrored,
+                             ray.sum, ray.pixel});
+            next_.back().pixel.reflect(pane->at, pane->normal);
             return;
         }
-        sums[ray.sum] += ray.weight * shading.city(placed, triangle, weights,
-                                                   shading.levelOf(triangle, footprint, cosine));
+        glm::vec3 light = shading.city(placed, triangle, weights, level);
+        if (scene.shadows != nullptr) light *= scene.shadows->share(ray.origin, ray.direction, hit.t);
+        sums[ray.sum] += ray.weight * light;
         return;
     }
     const VehiclePoint point =
@@ -68,8 +78,13 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
         sums[ray.sum] += ray.weight * plainSurroundings(shading.lighting(), point.coat, reflected) * fresnel;
         return;
     }
-    next_.push_back({mirrorStart(triangle.at(weights), triangle.facing(), reflected), reflected, footprint,
-                     ray.spread, ray.weight * fresnel, ray.sum});
+    next_.push_back({mirrorStart(triangle.at(weights), triangle.facing(), reflected),
+                     reflected,
+                     footprint,
+                     ray.spread,
+                     ray.weight * fresnel,
+                     ray.sum,
+                     {}});
 }
 
 std::uint64_t RayPaths::follow(const Scene& scene, int mirrors, std::span<glm::vec3> sums,

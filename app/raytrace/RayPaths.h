@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -7,9 +8,20 @@
 #include <vector>
 
 #include "app/frame/FrameScene.h"
+#include "app/raytrace/GroundShadows.h"
 #include "app/raytrace/RayShading.h"
 
 namespace app {
+
+/// The rays of the pixels beside a ray's, as long as all its mirrors were flat: they meet in one point, the
+/// eye's image, and tell how large a pixel is on what is met, as the rasteriser's derivatives do.
+struct PixelRays {
+    bool known = false;
+    glm::vec3 apex{0};
+    std::array<glm::vec3, 3> through{};  ///< the block's own pixel, the one right of it, the one above
+
+    void reflect(const glm::vec3& at, const glm::vec3& normal);
+};
 
 /// A ray whose light counts towards one sum.
 struct PathRay {
@@ -18,6 +30,7 @@ struct PathRay {
     float width = 0, spread = 0;   ///< as in TracedRay
     glm::vec3 weight{1};
     std::uint32_t sum = 0;  ///< index into the sums
+    PixelRays pixel = {};
 };
 
 /// Direction in which light comes from that a surface mirrors towards the eye, as vehicle.frag has it.
@@ -37,6 +50,8 @@ class RayPaths {
         const RayScene* scene = nullptr;
         const FrameScene* frame = nullptr;
         bool glass = false;  ///< the city's panes are mirrors too; otherwise they are as they are painted
+        const GroundShadows* shadows = nullptr;          ///< those of vehicles; null: none
+        TextureFilter filter = TextureFilter::standard;  ///< for rays that know their pixel
     };
 
     std::vector<PathRay> rays;  ///< to be filled; empty afterwards

@@ -68,6 +68,23 @@ PatternSampler::Level RayShading::levelOf(const MetTriangle& triangle, float foo
                                        TextureFilter::standard);
 }
 
+PatternSampler::Level RayShading::levelOf(const MetTriangle& triangle, const glm::vec3& apex,
+                                          const std::array<glm::vec3, 3>& through,
+                                          TextureFilter filter) const {
+    glm::vec2 texcoord[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        glm::vec2 w;
+        if (!triangle.meet(apex, through[k], w)) return {};
+        texcoord[k] = blend(triangle.corner[0]->texcoord, triangle.corner[1]->texcoord,
+                            triangle.corner[2]->texcoord, w);
+    }
+    const glm::vec2 dx = texcoord[1] - texcoord[0], dy = texcoord[2] - texcoord[0];
+    const float repeats = filter == TextureFilter::standard
+                              ? std::max(glm::length(dx), glm::length(dy))
+                              : std::max({std::abs(dx.x), std::abs(dx.y), std::abs(dy.x), std::abs(dy.y)});
+    return meshes_->patterns().levelOf(repeats, filter);
+}
+
 glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
                            PatternSampler::Level level, float skyShare, float sunShare) const {
     glm::vec3 normal[3], shaded[3], sunlit[3];
@@ -106,19 +123,26 @@ glm::vec3 RayShading::city(const PlacedMesh& placed, const MetTriangle& triangle
 }
 
 std::optional<GlassPoint> RayShading::glass(const PlacedMesh& placed, const MetTriangle& triangle,
-                                            const glm::vec2& weights) const {
+                                            const glm::vec2& weights, const glm::vec3& direction) const {
     if (placed.kind != PlacedMesh::Kind::city) return std::nullopt;
     const std::uint32_t material = triangle.corner[2]->material;
     if (material >= city_->materials.size()) return std::nullopt;
     const city::Pattern pattern = city_->materials[material].pattern;
     const auto panes = city::panesOf(pattern);
     if (panes.empty()) return std::nullopt;
+    GlassPoint point;
+    point.normal = triangle.facing();
+    point.glass = city::glassOf(pattern);
+    const float cosine = -glm::dot(point.normal, direction);
+    if (!(cosine > 0)) return std::nullopt;  // panes are seen from the street
+    point.at = triangle.at(weights) - direction * (city::paneOffset / cosine);
+    if (!triangle.meet(point.at, point.normal, point.weights)) return std::nullopt;
     const glm::vec2 texcoord = blend(triangle.corner[0]->texcoord, triangle.corner[1]->texcoord,
-                                     triangle.corner[2]->texcoord, weights);
+                                     triangle.corner[2]->texcoord, point.weights);
     const glm::vec2 at = texcoord - glm::floor(texcoord);
     for (const city::PaneOfPattern& pane : panes)
         if (at.x >= pane.low.x && at.x <= pane.high.x && at.y >= pane.low.y && at.y <= pane.high.y)
-            return GlassPoint{triangle.facing(), city::glassOf(pattern)};
+            return point;
     return std::nullopt;
 }
 

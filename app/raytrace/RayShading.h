@@ -49,6 +49,9 @@ struct VehiclePoint {
 /// A point of the city's glass.
 struct GlassPoint {
     glm::vec3 normal{0};  ///< unit, into the street
+    glm::vec3 at{0};      ///< on the pane, city::paneOffset before the wall
+    glm::vec2 weights{
+        0};  ///< of the wall's point behind it: what is painted there is what is seen through it
     city::GlassSurface glass;
 };
 
@@ -71,12 +74,15 @@ class RayShading {
     /// `skyShare`, `sunShare`: of the light that falls on it.
     glm::vec3 city(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
                    PatternSampler::Level level, float skyShare = 1, float sunShare = 1) const;
-    /// Whether a point of the city lies on a pane that mirrors, told by its wall's material and texture
-    /// coordinates: see city::panesOf.
+    /// Whether a ray that met a point of the city passes a pane that mirrors just before, told by the wall's
+    /// material and texture coordinates where it passes the panes' plane: see city::panesOf.
     std::optional<GlassPoint> glass(const PlacedMesh& placed, const MetTriangle& triangle,
-                                    const glm::vec2& weights) const;
+                                    const glm::vec2& weights, const glm::vec3& direction) const;
     /// Texture level for a ray that is `footprint` metres wide and meets the triangle at this cosine.
     PatternSampler::Level levelOf(const MetTriangle& triangle, float footprint, float cosine) const;
+    /// The same as the rasteriser chooses it: from three neighbouring pixels' rays from one point.
+    PatternSampler::Level levelOf(const MetTriangle& triangle, const glm::vec3& apex,
+                                  const std::array<glm::vec3, 3>& through, TextureFilter filter) const;
 
     VehiclePoint vehicle(const PlacedMesh& placed, const MetTriangle& triangle, const glm::vec2& weights,
                          const vehicles::VehiclePose& pose) const;

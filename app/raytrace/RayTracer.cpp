@@ -84,7 +84,7 @@ struct RayTracer::Impl {
         return scene;
     }
     RayPaths::Scene pathsIn(const RayScene& scene, bool glass = false) const {
-        return {&shading, &scene, &frame, glass};
+        return {&shading, &scene, &frame, glass, nullptr, filter};
     }
 
     struct Scratch {
@@ -101,8 +101,7 @@ struct RayTracer::Impl {
                     const reflection::TracedRay& ray, const reflection::TracedHit& hit, const glm::ivec2& at,
                     const TraceOptions& options, TracedPicture& picture, std::size_t index,
                     Scratch& out) const;
-    PatternSampler::Level quadLevel(const ViewRays& rays, const MetTriangle& triangle,
-                                    const glm::ivec2& pixel) const;
+    PixelRays pixelRays(const ViewRays& rays, const glm::ivec2& pixel) const;
 
     const city::CityModel& city;
     RayMeshes meshes;
@@ -137,26 +136,13 @@ void RayTracer::prepare(const FrameScene& scene) {
     impl_->shading.setLighting(impl_->frame.lighting);
 }
 
-PatternSampler::Level RayTracer::Impl::quadLevel(const ViewRays& rays, const MetTriangle& triangle,
-                                                 const glm::ivec2& pixel) const {
+PixelRays RayTracer::Impl::pixelRays(const ViewRays& rays, const glm::ivec2& pixel) const {
     // The rasteriser's derivatives are differences within blocks of two by two pixels, counted from the
     // lower left corner of the picture.
     const int left = pixel.x & ~1;
     const int lower = height - 1 - ((height - 1 - pixel.y) & ~1);
-    const auto texcoordAt = [&](int x, int y) -> std::optional<glm::vec2> {
-        glm::vec2 w;
-        if (!triangle.meet(rays.eye, rays.through(glm::vec2(x, y) + 0.5f), w)) return std::nullopt;
-        return triangle.corner[0]->texcoord * (1 - w.x - w.y) + triangle.corner[1]->texcoord * w.x +
-               triangle.corner[2]->texcoord * w.y;
-    };
-    const auto here = texcoordAt(left, lower), right = texcoordAt(left + 1, lower),
-               above = texcoordAt(left, lower - 1);
-    if (!here || !right || !above) return {};
-    const glm::vec2 dx = *right - *here, dy = *above - *here;
-    const float repeats = filter == TextureFilter::standard
-                              ? std::max(glm::length(dx), glm::length(dy))
-                              : std::max({std::abs(dx.x), std::abs(dx.y), std::abs(dy.x), std::abs(dy.y)});
-    return meshes.patterns().levelOf(repeats, filter);
+    const auto through = [&](int x, int y) { return rays.through(glm::vec2(x, y) + 0.5f); };
+    return {true, rays.eye, {through(left, lower), through(left + 1, lower), through(left, lower - 1)}};
 }
 
 void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
@@ -179,24 +165,27 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
             picture.kind[index] = SeenKind::lamp;
             picture.radiance[index] = placed.radiance;
             return;
-        case PlacedMesh::Kind::city:
+        case PlacedMesh::Kind::city: {
             picture.kind[index] = SeenKind::city;
-            if (const auto pane =
-                    options.windows > 0 ? shading.glass(placed, triangle, weights) : std::nullopt) {
+            PixelRays pixel = pixelRays(rays, at);
+            const PatternSampler::Level level = shading.levelOf(triangle, pixel.apex, pixel.through, filter);
+            if (const auto pane = options.windows > 0
+                                      ? shading.glass(placed, triangle, weights, ray.direction)
+                                      : std::nullopt) {
                 const GlassShares shares = glassShares(pane->glass, -glm::dot(pane->normal, ray.direction));
                 picture.kind[index] = SeenKind::glass;
                 picture.fresnel[index] = shares.mirrored;
                 picture.radiance[index] =
-                    shares.through *
-                    shading.city(placed, triangle, weights, quadLevel(rays, triangle, at), roomSky, roomSun);
-                out.paths.rays.push_back({triangle.at(weights) + pane->normal * city::paneOffset,
-                                          mirrorDirection(pane->normal, -ray.direction), ray.spread * hit.t,
-                                          ray.spread, glm::vec3(shares.mirrored),
-                                          static_cast<std::uint32_t>(index)});
+                    shares.through * shading.city(placed, triangle, pane->weights, level, roomSky, roomSun);
+                pixel.reflect(pane->at, pane->normal);
+                out.paths.rays.push_back({pane->at, mirrorDirection(pane->normal, -ray.direction),
+                                          ray.spread * hit.t, ray.spread, glm::vec3(shares.mirrored),
+                                          static_cast<std::uint32_t>(index), pixel});
                 return;
             }
-            picture.radiance[index] = shading.city(placed, triangle, weights, quadLevel(rays, triangle, at));
+            picture.radiance[index] = shading.city(placed, triangle, weights, level);
             return;
+        }
         case PlacedMesh::Kind::vehicle:
             break;
     }
@@ -253,6 +242,14 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
     if (!options.plain || options.windows > 0) mirrored.emplace(my.mirrorScene(detail, 0xffffffffu));
     const ViewRays rays(view);
     const GroundShadows shadows(my.frame, my.meshes, my.shading, view);
+    // Windows show the vehicles' shadows as well; local maps do not.
+    const GroundShadows everywhere(my.frame, my.meshes, my.shading);
+    RayPaths::Scene throughGlass;
+    if (mirrored) {
+        throughGlass = my.pathsIn(*mirrored, true);
+        throughGlass.shadows = &everywhere;
+        throughGlass.filter = my.filter;
+    }
 
     tbb::parallel_for(first, end, [&](int y) {
         Impl::Scratch& scratch = my.scratch.local();
@@ -273,7 +270,7 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
         }
         // Each pixel's ray adds to its own sum.
         if (!scratch.paths.rays.empty())
-            scratch.paths.follow(my.pathsIn(*mirrored, true), options.windows - 1, picture.radiance);
+            scratch.paths.follow(throughGlass, options.windows - 1, picture.radiance);
         if (scratch.mirrors.empty()) return;
         scratch.light.resize(scratch.mirrors.size());
         scratch.gatherer.gather(my.pathsIn(*mirrored, options.windows > 0), rays, scratch.mirrors, options,
@@ -399,9 +396,13 @@ reflection::ReferenceMap RayTracer::environmentMap(const glm::dvec3& centre, int
                 const glm::vec2 offset = samples == 1 ? glm::vec2(0.5f) : stratum(key, 0, s, samples);
                 const glm::vec3 direction =
                     glm::normalize(reflection::cubeDirection(face, glm::vec2(x, y) + offset, faceSize));
-                scratch.paths.rays.push_back({origin, direction, 0,
+                scratch.paths.rays.push_back({origin,
+                                              direction,
+                                              0,
                                               texel / std::sqrt(static_cast<float>(samples)),
-                                              glm::vec3(1 / static_cast<float>(samples)), 0});
+                                              glm::vec3(1 / static_cast<float>(samples)),
+                                              0,
+                                              {}});
             }
             const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(faceSize) +
                                       static_cast<std::size_t>(x);

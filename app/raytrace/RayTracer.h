@@ -28,7 +28,8 @@ struct TraceOptions {
     int bounces = 1;
     bool plain = false;  ///< plain paint: the picture of the method `none`; samples and bounces do not matter
     std::uint64_t seed = 1;
-    /// Mirrors in a row that begin with the city's glass: 0 leaves panes as they are painted. One ray a pixel.
+    /// Mirrors in a row that begin with the city's glass: 0 leaves panes as they are painted. One ray a
+    /// pixel.
     int windows = 0;
 };
 

@@ -28,8 +28,12 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         my_.setFrame(pass);
         my_.chosen.clear();
         for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
+        // A coarse body's normals bend what its paint mirrors, which shows where its shape does not:
+        // vehicles are as fine in mirrors as outside them.
+        PassView fine = pass;
+        fine.pixelsPerRadian /= share;
         const VehiclePass::Counts vehicles = my_.vehiclePass.draw(
-            pass, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
+            fine, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
             static_cast<float>(my_.detail.vehicleTolerance));
         const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
         const GlassPass::Counts glass = my_.drawPlainGlass(pass, PassTarget::cube, {&plan_, root_}, &node);
