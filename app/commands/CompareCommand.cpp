@@ -5,6 +5,7 @@
 
 #include "app/commands/Commands.h"
 #include "app/commands/CompareRun.h"
+#include "app/commands/CompareWindows.h"
 #include "app/commands/PreparedScene.h"
 #include "app/commands/Version.h"
 #include "app/compare/ComparePage.h"
@@ -35,6 +36,16 @@ void printRows(const std::vector<CompareRow>& rows) {
                       << v.points << " settings\n";
 }
 
+void printWindows(const std::vector<WindowRow>& rows) {
+    std::vector<std::vector<std::string>> table{
+        {"windows", "fronts", "panes", "passes", "levels", "frame ms", "/ painted", "FLIP", "PSNR dB"}};
+    for (const WindowRow& row : rows)
+        table.push_back({row.name, std::to_string(row.fronts), std::to_string(row.panes),
+                         std::to_string(row.passes), std::to_string(row.levels), fixed(row.frame.median, 1),
+                         fixed(row.ratioToPainted, 2), fixed(row.flip, 4), fixed(row.psnr, 1)});
+    std::cout << formatTable(table) << "\n";
+}
+
 int run(const Options& options) {
     PreparedScene stage(options);
     ResultFile results("compare", std::string(programVersion), stage.context.renderer());
@@ -50,9 +61,15 @@ int run(const Options& options) {
     if (stage.reflections.complete)
         comparison = runComparison(stage.scene, stage.reflections, stage.renderer, settings);
 
+    WindowComparison windows;
+    if (stage.reflections.complete && !interrupted())
+        windows = compareWindows(stage.scene, stage.reflections, stage.renderer, settings);
+
     const std::vector<CompareRow>& rows = comparison.rows;
     for (const CompareRow& row : rows) results.add(toJson(row, options.city));
+    for (const WindowRow& row : windows.rows) results.add(toJson(row, options.city));
     if (!rows.empty()) printRows(rows);
+    if (!windows.rows.empty()) printWindows(windows.rows);
     if (options.json) results.write(*options.json, interrupted());
     if (options.html && !rows.empty()) {
         const nlohmann::ordered_json document = results.document(interrupted());
@@ -66,7 +83,7 @@ int run(const Options& options) {
         head.frames = settings.frames;
         head.truth = comparison.truth;
         head.partial = interrupted();
-        writeTextFile(*options.html, comparePage(head, rows, comparison.strips));
+        writeTextFile(*options.html, comparePage(head, rows, comparison.strips, windows));
         spdlog::info("page: {}", options.html->string());
     }
     if (interrupted()) {
@@ -82,7 +99,9 @@ int run(const Options& options) {
 
 Command compareCommand() {
     return {.name = "compare",
-            .summary = "error against time against number of cars for every method, their settings swept",
+            .summary =
+                "error against time against number of cars for every method, their settings swept; and "
+                "of windows that mirror",
             .groups = cityOptions | trafficOptions | severalCars | cellOption | pictureOptions |
                       durationOptions | jsonOptions | htmlOptions,
             .benches = {},

@@ -1,6 +1,7 @@
 #include "app/commands/MirrorMask.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "reflection/local_map/PackedMips.h"
 
@@ -48,6 +49,17 @@ std::vector<glm::vec3> toFloat(const Image8& image) {
     for (std::size_t i = 0; i < pixels.size(); ++i)
         pixels[i] = glm::vec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0f;
     return pixels;
+}
+
+Image8 toImage(const std::vector<glm::vec3>& pixels, glm::ivec2 size) {
+    Image8 image{size, {}};
+    image.rgba.reserve(4 * pixels.size());
+    for (const glm::vec3& p : pixels) {
+        for (int c = 0; c < 3; ++c)
+            image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(p[c], 0.0f, 1.0f))));
+        image.rgba.push_back(255);
+    }
+    return image;
 }
 
 }  // namespace app

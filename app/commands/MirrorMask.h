@@ -27,5 +27,7 @@ class MirrorMask {
 
 /// sRGB-encoded colours 0..1, as the image errors take them.
 std::vector<glm::vec3> toFloat(const Image8& image);
+/// And back: values beyond 0..1 are cut.
+Image8 toImage(const std::vector<glm::vec3>& pixels, glm::ivec2 size);
 
 }  // namespace app

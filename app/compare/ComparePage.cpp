@@ -133,8 +133,8 @@ std::string picture(const std::string& kind, const Picture& p, const std::string
 /// Every picture is in the page once: on screen a viewer shows one method at a time, paper shows all.
 std::string stripSection(const PictureStrip& strip) {
     const std::string cars = std::to_string(strip.cars) + (strip.cars == 1 ? " car" : " cars");
-    std::string html =
-        "<section class=\"strip\"><h3>" + cars + " on screen</h3>\n<div class=\"tabs\"></div>\n";
+    const std::string title = strip.title.empty() ? cars + " on screen" : escaped(strip.title);
+    std::string html = "<section class=\"strip\"><h3>" + title + "</h3>\n<div class=\"tabs\"></div>\n";
     html += "<div class=\"frames\">\n<figure class=\"reference\">" +
             picture("truth", strip.truth, "truth, " + cars) +
             "<figcaption><b>truth</b></figcaption></figure>\n";
@@ -146,6 +146,42 @@ std::string stripSection(const PictureStrip& strip) {
                 escaped(frame.title) + "</b> " + escaped(frame.setting) + ": mean FLIP " +
                 fixed(frame.flip, 4) + "</figcaption></figure>\n";
     return html + "</div></section>\n";
+}
+
+/// All of the page that is about windows; nothing without any.
+std::string windowsSection(const WindowComparison& windows) {
+    if (windows.rows.empty()) return "";
+    std::string html =
+        "<section id=\"windows\">\n<h2>Windows that mirror</h2>\n"
+        "<p class=\"note\">Shop fronts and curtain walls of a street, drawn with so many mirrors in a row "
+        "and at most so many "
+        "reflections a frame; errors are over the pixels of glass, against ray traced glass, four mirrors in "
+        "a row.</p>\n"
+        "<div class=\"pair\">\n"
+        "<figure><div class=\"canvas\"><canvas id=\"windows-cost\"></canvas></div><figcaption>Time of a "
+        "frame, of the same with "
+        "painted windows, against the reflections drawn.</figcaption></figure>\n"
+        "<figure><div class=\"canvas\"><canvas id=\"windows-error\"></canvas></div><figcaption>Error of the "
+        "glass against that "
+        "time.</figcaption></figure>\n</div>\n";
+    for (const PictureStrip& strip : windows.strips) html += stripSection(strip);
+    html +=
+        "<div class=\"scroll\"><table><thead><tr><th class=\"text\">windows</th><th>mirrors in a "
+        "row</th><th>maps at "
+        "most</th><th>fronts</th><th>panes</th><th>passes</th><th>levels</th><th>Mtexels</th><th>MiB of "
+        "maps</th><th>frame ms</th><th>of painted</th><th>PSNR dB</th><th>FLIP</th></tr></thead><tbody>\n";
+    for (const WindowRow& row : windows.rows) {
+        html += "<tr data-windows=\"" + escaped(row.name) + "\"><td class=\"text\">" + escaped(row.name) +
+                "</td>";
+        for (const std::uint64_t count :
+             {static_cast<std::uint64_t>(row.depth), std::uint64_t{row.mostMaps}, std::uint64_t{row.fronts},
+              std::uint64_t{row.panes}, std::uint64_t{row.passes}, std::uint64_t{row.levels}})
+            html += "<td>" + std::to_string(count) + "</td>";
+        html += cell(static_cast<double>(row.texels) / 1e6, 2) +
+                cell(static_cast<double>(row.textureBytes) / 1048576, 1) + cell(row.frame.median, 1) +
+                cell(row.ratioToPainted, 2) + cell(row.psnr, 1) + cell(row.flip, 4) + "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n</section>\n";
 }
 
 /// JSON within a script element: nothing in it may end that element.
@@ -163,21 +199,25 @@ void put(std::string& page, const std::string& mark, std::string_view text) {
 }  // namespace
 
 std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
-                        const std::vector<PictureStrip>& strips) {
+                        const std::vector<PictureStrip>& strips, const WindowComparison& windows) {
     nlohmann::ordered_json data = nlohmann::ordered_json::array();
     for (const CompareRow& row : rows) {
         nlohmann::ordered_json json = toJson(row, head.city);
         json["title"] = row.point.title();
         data.push_back(std::move(json));
     }
+    nlohmann::ordered_json windowData = nlohmann::ordered_json::array();
+    for (const WindowRow& row : windows.rows) windowData.push_back(toJson(row, head.city));
     std::string stripsHtml;
     for (const PictureStrip& strip : strips) stripsHtml += stripSection(strip);
     // Marks from the end to the start, so that no text put in is searched for further marks.
     std::string page(embedded::page);
     put(page, "@SCRIPT@", embedded::script);
+    put(page, "@WINDOW_DATA@", scriptJson(windowData));
     put(page, "@DATA@", scriptJson(data));
     put(page, "@CHARTS@", embedded::charts);
     put(page, "@ROWS@", tableRows(rows));
+    put(page, "@WINDOWS@", windowsSection(windows));
     put(page, "@STRIPS@", stripsHtml);
     put(page, "@VERDICTS@", verdictTable(rows));
     put(page, "@FACTS@", factList(head, rows));

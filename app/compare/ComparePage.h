@@ -6,6 +6,7 @@
 
 #include "app/compare/CompareRow.h"
 #include "app/compare/PictureStrip.h"
+#include "app/compare/WindowRow.h"
 
 namespace app {
 
@@ -21,8 +22,9 @@ struct PageHead {
 };
 
 /// One HTML page that needs nothing but itself: charts, pictures with a slider, verdicts, and a table of all
-/// rows; with a style of its own for paper. Texts from outside are escaped.
+/// rows; the city's windows in a part of their own, where there are rows of them; with a style for paper.
+/// Texts from outside are escaped.
 std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
-                        const std::vector<PictureStrip>& strips);
+                        const std::vector<PictureStrip>& strips, const WindowComparison& windows = {});
 
 }  // namespace app

@@ -17,6 +17,7 @@ struct PictureStrip {
         Picture picture;
         Picture difference;  ///< FLIP against the truth, in the magma colours: black 0, pale yellow 1
     };
+    std::string title;  ///< empty: so many cars on screen
     std::uint32_t cars = 0;
     Picture truth;
     std::vector<Frame> frames;

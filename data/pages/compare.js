@@ -141,6 +141,22 @@ charts.push(new Chart(document.getElementById('by-views'), {
   options: lineOptions({ grid: { display: false } }, logAxis('ms a frame')),
 }));
 
+// Windows: a line for each number of mirrors in a row.
+const windowRows = JSON.parse(document.getElementById('window-data').textContent);
+if (windowRows.length) {
+  const depths = [...new Set(windowRows.map(r => r.depth))].sort(byNumber), shades = ['#8a939b', '#0b6e5f', '#3f7fc1', '#7a5ba8', '#c8452d'];
+  const lines = (x, y) => depths.map((depth, i) => ({ label: depth === 0 ? 'no mirror' : depth === 1 ? 'one mirror' : depth + ' mirrors in a row',
+    data: windowRows.filter(r => r.depth === depth && r[y] !== null).map(row => ({ x: row[x], y: row[y], row })).sort((a, b) => a.x - b.x),
+    borderColor: shades[i % shades.length], backgroundColor: shades[i % shades.length], showLine: depth > 0, pointRadius: 5, borderWidth: 2 }));
+  const about = { callbacks: { label: item => { const r = item.raw.row; return r.method + ': ' + r.passes + ' passes, ' + digits(r.ratio_to_painted, 2) +
+    ' of painted, ' + digits(r.psnr_db, 1) + ' dB, FLIP ' + digits(r.mean_flip, 4); } } };
+  for (const [id, x, y, across, up] of [['windows-cost', 'passes', 'ratio_to_painted', 'reflections drawn a frame', 'time, of painted windows'],
+    ['windows-error', 'ratio_to_painted', 'mean_flip', 'time, of painted windows', 'mean FLIP on glass']])
+    charts.push(new Chart(document.getElementById(id), { type: 'scatter', data: { datasets: lines(x, y) }, options: {
+      scales: { x: { title: { display: true, text: across }, grid: { color: '#eceff1' } }, y: { title: { display: true, text: up }, grid: { color: '#eceff1' } } },
+      plugins: { legend: { position: 'bottom', labels: { usePointStyle: true, boxWidth: 9, padding: 14 } }, tooltip: about } } }));
+}
+
 // Paper shows a picture of each chart, drawn at paper's proportions: a canvas does not follow another layout.
 for (const chart of charts) {
   const paper = document.createElement('img');

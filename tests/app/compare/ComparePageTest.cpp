@@ -105,6 +105,51 @@ std::vector<PictureStrip> strips() {
     return {strip};
 }
 
+WindowComparison windows() {
+    WindowComparison w;
+    for (int depth = 0; depth < 4; ++depth) {
+        WindowRow row;
+        row.name = "depth <" + std::to_string(depth);
+        row.depth = depth;
+        row.mostMaps = 8;
+        row.passes = static_cast<std::uint32_t>(2 * depth);
+        row.frame = {10, 10.0 + depth, 20, 3};
+        row.ratioToPainted = 1 + 0.125 * depth;
+        row.flip = 0.3 / (1 + depth);
+        if (depth > 0) row.psnr = 20 + 5.0 * depth;
+        w.rows.push_back(row);
+    }
+    w.strips = strips();
+    w.strips.front().title = "windows & cars";
+    return w;
+}
+
+TEST(ComparePageTest, showsWindowsWhereThereAreAny) {
+    const WindowComparison w = windows();
+    const std::string page = comparePage(head(), rows(), strips(), w);
+    EXPECT_EQ(nestingFault(page), "");
+    EXPECT_EQ(count(page, "<tr data-windows="), w.rows.size());
+    EXPECT_THAT(page, HasSubstr("<tr data-windows=\"depth &lt;3\">"));
+    EXPECT_THAT(page, HasSubstr("<h3>windows &amp; cars</h3>"));
+    for (const char* chart : {"<canvas id=\"windows-cost\">", "<canvas id=\"windows-error\">"})
+        EXPECT_THAT(page, HasSubstr(chart));
+    EXPECT_EQ(count(page, "src=\"data:image/jpeg;base64,/9j/"), 6u) << "the cars' strip and the windows'";
+    const std::string opening = "<script type=\"application/json\" id=\"window-data\">";
+    const std::size_t begin = page.find(opening) + opening.size();
+    const nlohmann::json data =
+        nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    ASSERT_EQ(data.size(), w.rows.size());
+    for (std::size_t i = 0; i < data.size(); ++i) {
+        EXPECT_EQ(data[i]["depth"], w.rows[i].depth);
+        EXPECT_EQ(data[i]["passes"], w.rows[i].passes);
+        EXPECT_DOUBLE_EQ(data[i]["ratio_to_painted"].get<double>(), w.rows[i].ratioToPainted);
+        EXPECT_EQ(data[i]["psnr_db"].is_null(), i == 0) << "not measured: null, not NaN";
+    }
+    const std::string without = comparePage(head(), rows(), strips());
+    EXPECT_THAT(without, Not(HasSubstr("id=\"windows\"")));
+    EXPECT_THAT(without, HasSubstr("id=\"window-data\">[]<"));
+}
+
 TEST(ComparePageTest, isWellFormed) {
     EXPECT_EQ(nestingFault(comparePage(head(), rows(), strips())), "");
     EXPECT_EQ(nestingFault(comparePage(head(), {}, {})), "");
@@ -124,7 +169,7 @@ TEST(ComparePageTest, needsNothingButItself) {
     EXPECT_EQ(count(page, "src=\"data:image/jpeg;base64,/9j/"), 3u) << "truth, picture and difference";
     EXPECT_THAT(page, HasSubstr("Chart="));
     for (const char* mark : {"@TITLE@", "@STYLE@", "@FACTS@", "@PARTIAL@", "@VERDICTS@", "@STRIPS@", "@ROWS@",
-                             "@CHARTS@", "@DATA@", "@SCRIPT@"})
+                             "@CHARTS@", "@DATA@", "@WINDOWS@", "@WINDOW_DATA@", "@SCRIPT@"})
         EXPECT_THAT(page, Not(HasSubstr(mark)));
 }
 
