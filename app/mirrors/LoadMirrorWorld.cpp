@@ -94,7 +94,7 @@ glm::vec3 tintOf(const Place& p) {
 }
 
 void readMirror(const Place& p, MirrorWorld& world) {
-    p.only({"kind", "corners", "reflectance", "roughness", "tint"});
+    p.only({"kind", "corners", "reflectance", "roughness", "tint", "ripples", "fade"});
     std::vector<glm::dvec3> corners;
     for (const Place& c : p.at("corners").items()) corners.push_back(c.vector());
     const reflection::MirrorResult made = reflection::MirrorPlane::make(corners, surfaceOf(p));
@@ -103,7 +103,18 @@ void readMirror(const Place& p, MirrorWorld& world) {
         const std::size_t parted = says.find("; ");
         p.at("corners").refuse(says.substr(0, parted), says.substr(parted + 2));
     }
-    world.mirrors.push_back({{world.mirrors.size(), made.mirror, reflection::Mirror::alone}, tintOf(p)});
+    MirrorWorld::Flat flat{{world.mirrors.size(), made.mirror, reflection::Mirror::alone}, tintOf(p), {}, 0};
+    if (p.has("ripples")) {
+        const Place ripples = p.at("ripples");
+        ripples.only({"slope", "wavelength"});
+        if (made.mirror.surface().roughness > 0)
+            ripples.refuse("the mirror is rough as well", "leave out one of 'roughness' and 'ripples'");
+        flat.ripples.slope = ripples.at("slope").number(0, 0.3);
+        flat.ripples.wavelength = ripples.at("wavelength").number(1e-3, 1e3);
+        flat.mirror.reach = flat.ripples.reach();
+    }
+    if (p.has("fade")) flat.fade = p.at("fade").number(1e-3, 1e6);
+    world.mirrors.push_back(std::move(flat));
 }
 
 void readCurved(const Place& p, MirrorWorld& world) {

@@ -68,6 +68,16 @@ glm::dvec3 reflectedAt(const reflection::MirrorPlane& mirror, const glm::dvec3& 
     return mirror.mirroredDirection(in);
 }
 
+/// Where a wave throws what falls on it; as a smooth mirror would, where that is into the water.
+glm::dvec3 reflectedByRipples(const MirrorWorld::Flat& mirror, const glm::dvec3& at, const glm::dvec3& in) {
+    const glm::dvec3& n = mirror.mirror.plane.normal();
+    const RippleFrame frame(n);
+    const glm::dvec2 slope = rippleSlope(mirror.ripples, frame, at);
+    const glm::dvec3 m = glm::normalize(n - slope.x * frame.u - slope.y * frame.v);
+    const glm::dvec3 out = in - 2 * glm::dot(in, m) * m;
+    return glm::dot(out, n) > 1e-3 ? out : mirror.mirror.plane.mirroredDirection(in);
+}
+
 }  // namespace
 
 struct MirrorTruth::Impl {
@@ -94,6 +104,7 @@ struct MirrorTruth::Impl {
         std::uint32_t pixel = 0;
         std::uint8_t level = 0, curved = 0;
         bool rough = false;
+        double fading = 0;  ///< 1 / metre: of all mirrors met that fade what they show
         Random random{0};
     };
 
@@ -129,6 +140,9 @@ struct MirrorTruth::Impl {
     }
 
     bool bounce(Path& path, const TracedHit& hit, int depth) const {
+        if (path.fading > 0)
+            path.throughput *=
+                static_cast<float>(hit.found() ? std::exp(-path.fading * static_cast<double>(hit.t)) : 0);
         if (!hit.found()) {
             path.light += path.throughput * world.sky(glm::vec3(path.direction));
             return false;
@@ -157,7 +171,10 @@ struct MirrorTruth::Impl {
             const reflection::MirrorPlane& plane = world.mirrors[hit.part - flats].mirror.plane;
             path.origin -= plane.signedDistance(path.origin) * plane.normal();
             path.rough = path.rough || plane.surface().roughness > 0;
-            path.direction = reflectedAt(plane, path.direction, path.random);
+            const MirrorWorld::Flat& mirror = world.mirrors[hit.part - flats];
+            if (mirror.fade > 0) path.fading += 1 / mirror.fade;
+            path.direction = mirror.ripples.any() ? reflectedByRipples(mirror, path.origin, path.direction)
+                                                  : reflectedAt(plane, path.direction, path.random);
         } else {
             path.curved = 1;
             const glm::dvec3 n = glm::normalize(

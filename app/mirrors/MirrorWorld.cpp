@@ -1,5 +1,6 @@
 #include "app/mirrors/MirrorWorld.h"
 
+#include <algorithm>
 #include <glm/trigonometric.hpp>
 #include <random>
 
@@ -13,6 +14,10 @@ std::size_t MirrorWorld::triangles() const {
     for (const Flat& f : mirrors) n += f.mirror.plane.corners().size() - 2;
     for (const Curved& c : curved) n += c.mesh.triangles();
     return n;
+}
+
+bool MirrorWorld::needsDistances() const {
+    return std::ranges::any_of(mirrors, [](const Flat& f) { return f.ripples.any() || f.fade > 0; });
 }
 
 reflection::TreeView MirrorWorld::view(const glm::ivec2& size) const {
@@ -42,7 +47,9 @@ void addMirror(MirrorWorld& world, const std::vector<glm::dvec3>& corners,
                const reflection::MirrorSurface& surface, const glm::vec3& tint) {
     world.mirrors.push_back({{world.mirrors.size(), reflection::MirrorPlane::make(corners, surface).mirror,
                               reflection::Mirror::alone},
-                             tint});
+                             tint,
+                             {},
+                             0});
 }
 
 void add(MirrorWorld& world, LitMesh mesh) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/mirrors/Ripples.h"
 #include "city/geometry/Aabb.h"
 #include "reflection/planar/ReflectionTree.h"
 
@@ -35,6 +36,9 @@ struct MirrorWorld {
     struct Flat {
         reflection::Mirror mirror;
         glm::vec3 tint{0};  ///< shown in place of what is not reflected: tint (1 - reflectance)
+        Ripples ripples;
+        /// Metres on which what is mirrored fades to black by 1/e; 0: it does not.
+        double fade = 0;
     };
     struct Curved {
         reflection::CurvedReflector reflector;
@@ -54,6 +58,8 @@ struct MirrorWorld {
     double fovYDegrees = 60;
 
     std::size_t triangles() const;
+    /// Whether some mirror is looked up by distances.
+    bool needsDistances() const;
     reflection::TreeView view(const glm::ivec2& size) const;
     /// Radiance of the background, a unit direction: linear in its height.
     glm::vec3 sky(const glm::vec3& direction) const {

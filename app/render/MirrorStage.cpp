@@ -61,6 +61,7 @@ MirrorStage::MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::
     : impl_(std::make_unique<Impl>(world, size, curved, [&] {
           reflection::MirrorPassOptions same = options;
           same.environments = curved;
+          same.distances = same.distances || world.needsDistances();
           return same;
       }())) {}
 MirrorStage::~MirrorStage() = default;

@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <glm/mat3x3.hpp>
 #include <optional>
 #include <vector>
@@ -238,8 +239,8 @@ struct MirrorWorldRenderer::Impl {
     bool face = false;  ///< an environment map's is being drawn
     Geometry plain;
     std::optional<Geometry> fine;
-    Kind matte{{"MATTE"}}, flat{{"FLAT"}}, rough{{"FLAT", "ROUGH"}}, sphere{{"VIEW"}}, cube{{"CUBE"}},
-        pair{{"PAIR"}};
+    Kind matte{{"MATTE"}}, flat{{"FLAT"}}, rough{{"FLAT", "ROUGH"}}, bumped{{"FLAT", "BUMPED"}},
+        sphere{{"VIEW"}}, cube{{"CUBE"}}, pair{{"PAIR"}};
     gl::Program sky = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"});
     gl::Program skyBent = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"}, {"PARABOLOID"});
     gl::VertexArray nothing = gl::VertexArray::create();
@@ -330,7 +331,12 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
         my.draw(g.curved[node.curved]);
         return;
     }
-    const gl::Program& p = my.use(map.blurred != 0 ? my.rough : my.flat, view, clip, glass);
+    const auto isBumped = [&](std::uint32_t m) { return my.world.mirrors[m].ripples.any(); };
+    const bool bumped = map.distance != 0 && std::ranges::any_of(tree.mirrorsOf(node), isBumped);
+    const gl::Program& p = my.use(map.blurred != 0 ? my.rough
+                                  : bumped         ? my.bumped
+                                                   : my.flat,
+                                  view, clip, glass);
     p.set("uvFromFragment", map.uvFromFragment);
     p.set("uvLimits", map.uvLimits);
     p.set("blurredScale", map.blurredScale);
@@ -346,6 +352,14 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
         p.set("reflectance", plane.surface().reflectance);
         p.set("tint", my.world.mirrors[m].tint);
         p.set("mirrorNormal", glm::vec3(plane.normal()));
+        const MirrorWorld::Flat& flat = my.world.mirrors[m];
+        p.set("fading", flat.fade > 0 && map.distance != 0 ? static_cast<float>(1 / flat.fade) : 0.f);
+        if (bumped) {
+            const RippleFrame frame(plane.normal());
+            p.set("rippleU", glm::vec3(frame.u));
+            p.set("rippleV", glm::vec3(frame.v));
+            p.set("ripples", glm::vec2(flat.ripples.slope, flat.ripples.wavelength));
+        }
         p.set("glossAngle", static_cast<float>(reflection::glossAngle(plane.surface().roughness)));
         my.draw(g.mirrors[m]);
     }

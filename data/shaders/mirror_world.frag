@@ -1,5 +1,5 @@
 #version 450 core
-// MATTE: what the corners say. FLAT: a planar mirror with its map, ROUGH: blurred. Otherwise a curved reflector: VIEW: view-dependent map,
+// MATTE: what the corners say. FLAT: a planar mirror with its map, ROUGH: blurred, BUMPED: with waves. Otherwise a curved reflector: VIEW: view-dependent map,
 // CUBE or PAIR: view-independent, PARALLAX: with distances in alpha.
 #if defined(FLAT)
 #include "mirror_map.glsl"
@@ -19,6 +19,7 @@ uniform float glossAngle;       // radians
 uniform int blurLevels;
 layout(binding = 10) uniform sampler2D mirrorDistance;
 uniform bool addDistance;
+uniform float fading;  // 1 / metre
 #elif defined(VIEW)
 layout(binding = 8) uniform sampler2D map;
 uniform mat3 mapFromRelative;  // view space of the map
@@ -57,6 +58,49 @@ vec3 seenFromCentre(vec3 from, vec3 towards) {
 }
 #endif
 
+#ifdef BUMPED
+uniform vec3 eye;
+uniform vec3 rippleU, rippleV;
+uniform vec2 ripples;  // slope, wavelength
+
+// The twin of app::rippleSlope.
+vec2 rippleSlope(vec3 world) {
+    vec2 at = vec2(dot(rippleU, world), dot(rippleV, world)), slope = vec2(0.0);
+    float number = 6.28318531 / ripples.y;
+    for (int i = 0; i < 6; ++i) {
+        float angle = 0.43633231 * (float(i) - 2.5) * (i % 2 == 0 ? 1.0 : -1.0);
+        vec2 along = vec2(cos(angle), sin(angle));
+        slope += ripples.x * sqrt(2.0 / 6.0) * cos(number * dot(along, at) + 2.4 * float(i)) * along;
+        number /= 0.7;
+    }
+    return slope;
+}
+
+// Texture coordinates at which the map shows what a direction, or a place relative to the eye, leads to.
+vec2 uvTowards(vec3 place) {
+    vec3 q = viewFromRelative * place, here = viewFromRelative * relative;
+    return mirrorUv(gl_FragCoord.xy) + (q.xy / max(-q.z, 1e-4) - here.xy / -here.z) * uvPerTangent;
+}
+
+vec3 mirrorBumped(vec3 d) {
+    vec2 slope = rippleSlope(relative + eye);
+    vec3 r = reflect(d, normalize(mirrorNormal - slope.x * rippleU - slope.y * rippleV));
+    float up = dot(r, mirrorNormal);
+    if (up <= 1e-3) return mirrorSharp(gl_FragCoord.xy, vec2(0.0));
+    // Behind the glass the ray goes on as if mirrored; the map tells where it ends.
+    vec3 v = r - 2.0 * up * mirrorNormal;
+    float before = length(relative), behind = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r - before;
+    vec2 uv = mirrorUv(gl_FragCoord.xy);
+    for (int step = 0; step < 3; ++step) {
+        vec3 place = isinf(behind) ? v : relative + max(behind, 0.0) * v;
+        uv = clamp(uvTowards(place), uvLimits.xy, uvLimits.zw);
+        float way = textureLod(mirrorDistance, uv, 0.0).r;
+        behind = isinf(way) ? way : dot(way * normalize(place) - relative, v);
+    }
+    return textureLod(mirrorColour, uv, 0.0).rgb;
+}
+#endif
+
 #ifdef FLAT
 // Movement over the image when a direction of view space turns towards `e`, for one radian.
 vec2 movement(vec3 v, vec3 e) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) * uvPerTangent; }
@@ -81,9 +125,12 @@ void main() {
     vec2 along = glossAngle * movement(v, viewFromRelative * e1);
     vec2 across = glossAngle * facing * movement(v, viewFromRelative * e2);
     light = mirrorGloss(gl_FragCoord.xy, vec2(0.0), along, across, blurLevels);
+#elif defined(BUMPED)
+    light = mirrorBumped(d);
 #else
     light = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
 #endif
+    if (fading > 0.0) light *= exp(-fading * max(textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r - length(relative), 0.0));
     if (addDistance || keepNearness) {
         float way = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
         if (addDistance) distanceOut = way;

@@ -34,7 +34,7 @@ void bind(const MirrorTarget& target) {
 }
 
 void MirrorMaps::look(const ReflectionTree& tree) {
-    withDistance_ = options_.nearness && !tree.environments.empty();
+    withDistance_ = options_.distances || (options_.nearness && !tree.environments.empty());
     for (const ReflectionNode& n : tree.nodes) withDistance_ = withDistance_ || rough(n);
     if (tree.outlines.empty()) return;
     if (!corners_) {

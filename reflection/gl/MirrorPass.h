@@ -26,6 +26,7 @@ struct MirrorPassOptions {
     /// greatest axis; 0: infinitely far), and mirrors' maps have distances, so that a curved mirror can be
     /// looked up where a ray ends. False: the paper's, for which all lies infinitely far.
     bool nearness = false;
+    bool distances = false;  ///< all mirrors' maps have them: for bumped ones, and those that fade
     CurvedMaps environments =
         CurvedMaps::cube;  ///< what `publish` hands out: cube maps or pairs of paraboloids
 };

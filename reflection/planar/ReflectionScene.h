@@ -19,6 +19,9 @@ struct Mirror {
     MirrorPlane plane;
     /// Mirrors with the same number lie in one plane and may share a mirror view (see `groupCoplanar`).
     std::uint32_t group = alone;
+    /// Radians by which its reflections stray besides roughness, where it is bumped: what is drawn of them is
+    /// that much larger than the mirror.
+    double reach = 0;
 };
 
 /// Numbers the groups of coplanar mirrors, from 0; those without a companion stay alone. Returns the number

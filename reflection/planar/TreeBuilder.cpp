@@ -266,8 +266,9 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     node.pixels = seen.portal.area * image.pixelsPerNdc;
     node.coarser = economies.detail ? image.coarser + 1 : 0;
     glm::vec3 reflectance(0);
-    double roughness = 0;
+    double roughness = 0, stray = 0;
     for (std::uint32_t m : seen.mirrors) {
+        stray = std::max(stray, scene_.mirrors[m].reach);
         reflectance = glm::max(reflectance, scene_.mirrors[m].plane.surface().reflectance);
         roughness = std::max(roughness, static_cast<double>(scene_.mirrors[m].plane.surface().roughness));
     }
@@ -278,9 +279,9 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     // are not the picture's pixels is interpolated, a texel beyond.
     NdcRect seenThrough = seen.portal.bounds;
     const bool texelsArePixels = image.grid == tree_.roots[image.root].size && settings_.levelScale >= 1;
-    const bool larger = perspective && (roughness > 0 || !texelsArePixels);
+    const bool larger = perspective && (roughness > 0 || stray > 0 || !texelsArePixels);
     if (larger) {
-        const double reach = 3 * glossAngle(roughness);
+        const double reach = 3 * glossAngle(roughness) + stray;
         const double texels = texelsArePixels ? 0 : 3 / std::pow(settings_.levelScale, image.level);
         const glm::dvec2 margin =
             reach * glm::dvec2(node.view.clipFromView[0][0], node.view.clipFromView[1][1]) +
@@ -320,7 +321,7 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         node.obliqueClipFromView = obliqueNear(drawn, plane).clipFromView;
     }
     // The filter of a rough mirror reaches farther than any polygon.
-    if (roughness <= 0)
+    if (roughness <= 0 && stray <= 0)
         outline(node, seen, image.grid,
                 texelsArePixels ? 1 : 2 / std::pow(settings_.levelScale, image.level));
     candidate.mirrors = std::move(seen.mirrors);

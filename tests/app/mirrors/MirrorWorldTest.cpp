@@ -109,9 +109,37 @@ TEST(SceneFiles, AreRefusedWithThePlaceAndTheRemedy) {
     EXPECT_THAT(
         complaintOf(sceneWith("2", R"({"kind":"box","low":[0,0,0],"high":[1,0,1],"colour":[1,1,1]})", "12")),
         HasSubstr("no volume"));
+    const auto withRipples = [](const std::string& roughness, const std::string& ripples) {
+        return complaintOf(
+            sceneWith("2", R"({"kind":"mirror","corners":[[0,0,0],[1,0,0],[1,0,1]],"reflectance":[1,1,1])" +
+                               roughness + R"(,"ripples":)" + ripples + "}"));
+    };
+    EXPECT_THAT(withRipples("", R"({"slope":0.5,"wavelength":1})"), HasSubstr("0.5 lies outside 0 .. 0.3"));
+    EXPECT_THAT(withRipples("", R"({"slope":0.1})"), HasSubstr("'wavelength' is missing"));
+    EXPECT_THAT(withRipples(R"(,"roughness":0.2)", R"({"slope":0.1,"wavelength":1})"),
+                HasSubstr("rough as well"));
     EXPECT_THAT(complaintOf("[]"), HasSubstr("is not an object"));
     EXPECT_THAT(complaintOf(""), HasSubstr("not JSON"));
     EXPECT_THROW(loadMirrorWorld("/nowhere/scene.json"), std::runtime_error);
+}
+
+TEST(Ripples, SlopesHaveTheDeviationThatWasAskedForAndStayWithinTheirReach) {
+    const Ripples ripples{0.03, 0.7};
+    const RippleFrame frame({0, 0, 1});
+    std::mt19937_64 random(3);
+    double sum = 0, most = 0;
+    const int samples = 20000;
+    for (int i = 0; i < samples; ++i) {
+        const glm::dvec3 at(static_cast<double>(random() % 100000) * 1e-3,
+                            static_cast<double>(random() % 100000) * 1e-3, 0);
+        const glm::dvec2 slope = rippleSlope(ripples, frame, at);
+        sum += glm::dot(slope, slope);
+        most = std::max(most, glm::length(slope));
+    }
+    // Six waves add up in both directions: the variances of both axes together are the square of `slope`.
+    EXPECT_NEAR(std::sqrt(sum / samples), 0.03, 0.03 * 0.03);
+    EXPECT_LT(2 * most, ripples.reach());
+    EXPECT_EQ(rippleSlope({0, 1}, frame, {1, 2, 3}), glm::dvec2(0));
 }
 
 // Bytes changed, dropped and doubled at random: refused with a sentence, or read; nothing else.

@@ -159,6 +159,19 @@ TEST_F(MirrorStageGlTest, CurvedReflectorsComeNearWhatRaysSee) {
     EXPECT_GT(got[CurvedMaps::dualParaboloid], 24);
 }
 
+// 28 dB: what waves turn away from the eye behind other things is not in the map.
+TEST_F(MirrorStageGlTest, BumpedAndFadingMirrorsComeNearTheTruth) {
+    MirrorWorld world = loadMirrorWorld(std::string(MIRRORSTREET_SOURCE_DIR) + "/data/scenes/water.json");
+    const double wind = world.mirrors[0].ripples.slope;
+    for (double slope : {0.0, wind}) {
+        world.mirrors[0].ripples.slope = slope;
+        const TracedPicture truth = MirrorTruth(world).picture(world.view(size), {.depth = 2, .samples = 1});
+        MirrorStage stage(world, size, CurvedMaps::none, exact());
+        stage.draw({});
+        EXPECT_GT(psnrOf(stage.read(), truth.radiance, size, truth.level), slope > 0 ? 28 : 45);
+    }
+}
+
 // Balls near a floor, walls and mirrors, seen in each other: where a ray ends matters.
 TEST_F(MirrorStageGlTest, CurvedReflectorsAreTruerWithDistances) {
     for (const auto& [which, gain] : {std::pair{'b', 1.5}, std::pair{'c', 4.0}}) {
