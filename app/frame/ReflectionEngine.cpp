@@ -182,20 +182,9 @@ const ReflectionSettings& ReflectionEngine::settings() const {
     return impl_->settings;
 }
 
-void ReflectionEngine::replaceMaps(std::span<const reflection::PackedReferenceMap> maps) {
-    impl_->gpu.reset();  // it reads the old ones
-    impl_->maps = maps;
-    impl_->countReferenceMaps();
-    impl_->forget();
-}
-
 void ReflectionEngine::keepDistances() {
     impl_->atlas.keepNearness();
     impl_->forget();
-}
-
-bool ReflectionEngine::buildsOnGpu() const {
-    return impl_->onGpu();
 }
 
 reflection::LocalMapTextures ReflectionEngine::textures() const {

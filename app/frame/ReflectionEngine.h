@@ -76,8 +76,6 @@ class ReflectionEngine {
     /// New settings; maps are forgotten where the method changes.
     void configure(const ReflectionSettings& settings);
     const ReflectionSettings& settings() const;
-    /// Other reference maps (another light): all local maps are rebuilt.
-    void replaceMaps(std::span<const reflection::PackedReferenceMap> maps);
 
     /// Plans and executes one frame. `drawer` must be prepared with the same scene.
     const ReflectionPlan& update(const FrameScene& scene, std::span<const SeenVehicle> seen,
@@ -99,9 +97,6 @@ class ReflectionEngine {
     /// From now on local maps keep their distances whether they are looked up with parallax or not: for
     /// measurements.
     void keepDistances();
-
-    /// Whether local maps are made by the GPU with the present settings.
-    bool buildsOnGpu() const;
 
     /// The mesh of a vehicle's local map, as lines in face coordinates, for looking at: built anew.
     std::vector<reflection::LocalMapMesh::Quad> meshOf(const glm::dvec3& centre, int face, int faceSize,
