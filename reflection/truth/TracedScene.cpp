@@ -202,7 +202,9 @@ void TracedScene::trace(std::span<const TracedRay> rays, std::span<TracedHit> hi
 void TracedScene::blocked(std::span<const TracedRay> rays, std::span<std::uint8_t> result) const {
     RayContext context;
     rtcInitIntersectContext(&context.embree);
-    // One by one: Embree 3.13.5 was seen never to return from packets of sixteen of which one ray is valid.
+    // One by one: Embree 3.13.5 never returns from rtcOccluded16 where instances are traced with the flag
+    // COHERENT (tried: with and without filters and its robust mode; without the flag, or without instances,
+    // it returns and agrees).
     for (std::size_t i = 0; i < rays.size(); ++i) {
         context.rays = &rays[i];
         RTCRay ray{};
