@@ -22,8 +22,8 @@ namespace app {
 
 namespace {
 
-/// Changes when the drawing of reference maps changes, so that old caches are not taken for new ones.
-constexpr std::uint64_t bakeVersion = 1;
+/// Changes when the drawing or the placement of reference maps changes, so that old caches are not taken for new ones.
+constexpr std::uint64_t bakeVersion = 2;
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
     // splitmix64's finaliser over the running hash.
