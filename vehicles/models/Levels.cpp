@@ -171,6 +171,18 @@ city::Mesh simplifiedAcross(const city::Mesh& mesh, std::size_t triangles) {
     return indexed(corners);
 }
 
+/// As many triangles as asked, or up to twice that where the shape then is as near (to a centimetre) and
+/// keeps its surfaces' borders: a lamp cut in half shows at a distance at which a centimetre does not.
+city::Mesh simplifiedForFar(const city::Mesh& body, std::size_t triangles) {
+    city::Mesh across = simplifiedAcross(body, triangles);
+    const float reached = distanceBetween(body, across) + 0.01f;
+    for (const std::size_t more : {triangles, triangles * 3 / 2, triangles * 2}) {
+        city::Mesh bordered = simplified(body, more);
+        if (bordered.triangleCount() <= more && distanceBetween(body, bordered) <= reached) return bordered;
+    }
+    return across;
+}
+
 WheelShape shapeOf(const VehicleModel& model) {
     WheelShape shape{
         .radius = model.wheelRadius, .width = 0.2f, .rimRadius = 0.66f * model.wheelRadius, .tyre = false};
@@ -339,9 +351,11 @@ void makeLevels(VehicleModel& model, const LevelPlan& plan) {
         // Seals first, so that what they surround is then joined to what lies beyond them.
         if (far) body = withoutThinPieces(body, steps[0].thin * 2);
         body = withoutThinPieces(body, step.thin);
-        // Far off, borders of surfaces follow the shape's triangles: kept as borders, they would use up the
-        // few there are.
-        city::Mesh coarse = far ? simplifiedAcross(body, target) : simplified(body, target);
+        // Farthest off, borders of surfaces follow the shape's triangles: kept as borders, they would use up
+        // the few there are.
+        city::Mesh coarse = k == 0   ? simplified(body, target)
+                            : k == 1 ? simplifiedForFar(body, target)
+                                     : simplifiedAcross(body, target);
         if (far) coarse = withWheels(coarse, model, wheel);
         optimise(coarse);
         if (coarse.empty() || coarse.triangleCount() >= model.levels.back().body.triangleCount()) continue;

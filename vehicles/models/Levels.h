@@ -11,10 +11,10 @@ struct LevelPlan {
 
 /// Fills model.levels[1..] from levels[0]: thin pieces of surface (gaps, seals) take their neighbours'
 /// surface, small separate parts are dropped, and the rest goes through meshoptimizer's quadric
-/// simplification, which keeps the borders of surfaces. The last two levels carry plain wheels. Errors are
-/// measured (`distanceBetween`) and never fall from level to level; a level that would not be smaller than
-/// the one before is left out. All levels, and the wheel, come out ordered for the vertex cache. An empty
-/// body is left as it is. Cost: some tens of milliseconds.
+/// simplification, which keeps the borders of surfaces but in the last level. The last two levels carry plain
+/// wheels. Errors are measured (`distanceBetween`) and never fall from level to level; a level that would not
+/// be smaller than the one before is left out. All levels, and the wheel, come out ordered for the vertex
+/// cache. An empty body is left as it is. Cost: some tens of milliseconds.
 void makeLevels(VehicleModel& model, const LevelPlan& plan = {});
 
 /// The mesh with every connected piece of one surface that is thinner than `thickness` metres (twice its area
