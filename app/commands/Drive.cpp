@@ -253,7 +253,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
 Governed Drive::chooseDetail(std::size_t seen, const View& view) {
     governor_->expect({seen, !choosing_ && renderer_->drewLast(view)});
     const Rung rung = governor_->ladder().at(governor_->position());
-    renderer_->setDetail(rung.detail.drawing, governor_->dissolveFrames());
+    renderer_->setDetail(governor_->detail().drawing, governor_->dissolveFrames());
     ReflectionSettings reflecting = reflectionSettings();
     reflecting.detail = governor_->detail().reflection;
     engine_->configure(reflecting);

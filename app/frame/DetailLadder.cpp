@@ -90,15 +90,6 @@ double DetailLadder::positionForError(double error) const {
     return 0;
 }
 
-double DetailLadder::positionForMs(double ms) const {
-    for (std::size_t i = 0; i < rungs_.size(); ++i) {
-        if (rungs_[i].ms() > ms) continue;
-        if (i == 0 || resizes(i - 1)) return static_cast<double>(i);
-        return static_cast<double>(i - 1) + crossing(rungs_[i - 1].ms(), rungs_[i].ms(), ms);
-    }
-    return last();
-}
-
 double& valueOf(Detail& detail, Knob knob) {
     switch (knob) {
         case Knob::texelBudget:

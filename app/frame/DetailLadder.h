@@ -58,8 +58,6 @@ class DetailLadder {
     double jumpBetween(double a, double b) const;
     /// The cheapest position whose error is at most this; the finest where none is.
     double positionForError(double error) const;
-    /// The finest position that costs at most this, as measured; the cheapest where none does.
-    double positionForMs(double ms) const;
 
   private:
     std::vector<Rung> rungs_;

@@ -21,14 +21,16 @@ constexpr double tooMuch = 1.08;
 /// Where the next detail would be a smaller picture, this much is let stand.
 constexpr double beforeResizing = 1.05;
 // Mean FLIP of a picture from frame to frame that is let happen: in a view that stands, a quarter of what far
-// traffic in a street does (0.0003, measured); else much less than what moving by a pixel does.
-constexpr double unseen = 0.00008;
+// traffic in a street does (0.0002, measured); else much less than what moving by a pixel does.
+constexpr double unseen = 0.00004;
 constexpr double unseenMoving = 0.003;
-constexpr int longestDissolve = 600;
+constexpr int longestDissolve = 1200;
 /// Before the picture is made smaller, all else is given up and looked at, unless even so it would take more
 /// than this.
-constexpr double worthTrying = 1.25;
+constexpr double worthTrying = 1.15;
 constexpr double farTooMuch = 1.5;
+/// By how much numbers that follow may change in a frame, as a ratio: fourfold takes a second.
+constexpr double followed = 1.03;
 /// Frames from one step to the next, at least: so many tell what the last one brought.
 constexpr int framesBetweenSteps = 8;
 // Seconds of room for more before it is taken, at first and at most: doubled each time that it was taken
@@ -175,7 +177,12 @@ void Governor::expect(const FrameOutlook& outlook) {
     vehicles_ = static_cast<double>(outlook.reflecting);
     const bool sudden = std::abs(predictedMs() - before) > foreseen * budget_;
     dissolveFrames_ = 0;
-    dissolving_ = outlook.still ? std::max(dissolving_ - 1, 0) : 0;
+    decide(outlook.still, sudden);
+    follow(outlook.still && !sudden);
+}
+
+void Governor::decide(bool still, bool sudden) {
+    dissolving_ = still ? std::max(dissolving_ - 1, 0) : 0;
     const double aim = aimed * budget_;
     if (frames_.count == 0) position_ = positionFor(aim, beforeResizing * budget_);
     if (frames_.count < framesKnown) return;
@@ -193,21 +200,39 @@ void Governor::expect(const FrameOutlook& outlook) {
         // One size at a time, as the next may save more than was measured elsewhere.
         const double next = ladder_.sameSize(std::min(end + 1, ladder_.last())).second;
         if (wanted > next && predictedAt(next) <= farTooMuch * budget_) wanted = next;
-        stepTo(wanted, outlook.still);
+        stepTo(wanted, still);
     } else if (sinceRoom_ >= patience_ || (sudden && now < muchRoom * budget_)) {
         const double wanted = positionFor(aim, budget_);
         if (wanted < position_) {
-            stepTo(wanted, outlook.still);
+            stepTo(wanted, still);
             lastStepUp_ = seconds_;
         }
         sinceRoom_ = 0;
     } else if (dissolving_ == 0) {
-        creep(outlook.still);
+        creep(still);
     }
     if (seconds_ > calmSince_ + quietSeconds) {
         patience_ = std::max(patience_ / 2, patienceAtFirst);
         calmSince_ = seconds_;
     }
+}
+
+void Governor::follow(bool noticed) {
+    const Detail wanted = ladder_.at(position_).detail;
+    if (!followed_ || !noticed) {
+        followed_ = wanted;
+        return;
+    }
+    const auto near = [](double before, double now) {
+        return before > 0 ? std::clamp(now, before / followed, before * followed) : now;
+    };
+    const Detail before = *followed_;
+    followed_ = wanted;
+    ReflectionDetail& maps = followed_->reflection;
+    maps.texelsPerPixel = near(before.reflection.texelsPerPixel, maps.texelsPerPixel);
+    maps.errorThreshold = near(before.reflection.errorThreshold, maps.errorThreshold);
+    double& levels = followed_->drawing.vehicleTolerance;
+    levels = near(before.drawing.vehicleTolerance, levels);
 }
 
 void Governor::stepTo(double position, bool still) {
@@ -243,7 +268,7 @@ void Governor::creep(bool still) {
 }
 
 Detail Governor::detail() const {
-    Detail detail = ladder_.at(position_).detail;
+    Detail detail = followed_ ? *followed_ : ladder_.at(position_).detail;
     const double perTexel = perTexel_.median(0);
     if (perTexel > 0) {
         const double texels = shareOfMaps * budget_ / perTexel;

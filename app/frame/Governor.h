@@ -47,6 +47,8 @@ struct FrameCost {
 ///   once.
 /// - Nearer to the budget it creeps, by less than is seen in a frame, and never to another size of the
 ///   picture.
+/// Sizes of maps, the shift that they may have and levels of vehicles follow in a view that stands at a rate:
+/// vehicles differ in size, so each changes in another frame.
 ///
 /// Deterministic: the same outlooks and costs, the same details.
 class Governor {
@@ -104,6 +106,10 @@ class Governor {
     double positionFor(double ms, double atEnds) const;
     void stepTo(double position, bool still);
     void creep(bool still);
+    void decide(bool still, bool sudden);
+    /// Numbers of the coming detail that follow at a rate. `noticed`: in a view that stands, where nothing
+    /// else changes much.
+    void follow(bool noticed);
 
     DetailLadder ladder_;
     double budget_;
@@ -118,6 +124,7 @@ class Governor {
     std::vector<double> bends_;
     std::size_t framesSeen_ = 0;
     int dissolveFrames_ = 0;
+    std::optional<Detail> followed_;
     int sinceStep_ = 1 << 20;  ///< frames
     int dissolving_ = 0;       ///< frames left
     double seconds_ = 0;       ///< since the start, in frames

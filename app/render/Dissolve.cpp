@@ -1,6 +1,7 @@
 #include "app/render/Dissolve.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <numeric>
 
@@ -16,13 +17,13 @@ void Dissolve::start(glm::ivec2 size, int frames) {
     now_.assign(static_cast<std::size_t>(tiles_.x) * static_cast<std::size_t>(tiles_.y), 0);
 }
 
-void Dissolve::keepLive(std::uint64_t name, const glm::ivec4& pixels) {
+void Dissolve::keepLive(std::uint64_t name, const glm::ivec4& pixels, int frames) {
     const glm::ivec2 low = glm::max(glm::ivec2(pixels), glm::ivec2(0));
     const glm::ivec2 high = glm::min(glm::ivec2(pixels.z, pixels.w), size_);
     if (!active() || low.x >= high.x || low.y >= high.y) return;
-    const auto [found, isNew] = live_.try_emplace(name, low, high);
+    const auto [found, isNew] = live_.try_emplace(name, Live{{low, high}, std::max(frames, 1), 0});
     if (isNew) return;
-    glm::ivec4& all = found->second;
+    glm::ivec4& all = found->second.pixels;
     all = {glm::min(glm::ivec2(all), low), glm::max(glm::ivec2(all.z, all.w), high)};
 }
 
@@ -49,8 +50,28 @@ std::span<const glm::ivec4> Dissolve::advance() {
                                          std::min((y + 1) * tile, size_.y));
             x = end + 1;
         }
-    for (const auto& [name, pixels] : live_) rectangles_.push_back(pixels);
+    for (auto& [name, live] : live_) {
+        live.frame = std::min(live.frame + 1, live.frames);
+        addLive(live);
+    }
     return rectangles_;
+}
+
+void Dissolve::addLive(const Live& live) {
+    const glm::ivec4& pixels = live.pixels;
+    if (live.frame >= live.frames) {
+        rectangles_.push_back(pixels);
+        return;
+    }
+    // The fractions of the golden section's multiples are scattered evenly, rows shifted against each other.
+    const double until = static_cast<double>(live.frame) / live.frames;
+    for (int y = pixels.y / tile; y * tile < pixels.w; ++y)
+        for (int x = pixels.x / tile; x * tile < pixels.z; ++x) {
+            const double turn = 0.6180339887 * x + 0.7548776662 * y;
+            if (turn - std::floor(turn) >= until) continue;
+            rectangles_.emplace_back(std::max(x * tile, pixels.x), std::max(y * tile, pixels.y),
+                                     std::min((x + 1) * tile, pixels.z), std::min((y + 1) * tile, pixels.w));
+        }
 }
 
 }  // namespace app

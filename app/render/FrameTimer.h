@@ -2,8 +2,8 @@
 
 #include <array>
 #include <chrono>
-#include <cstddef>
 
+#include "app/render/QueryTurns.h"
 #include "reflection/gl/TimerQuery.h"
 
 namespace app {
@@ -11,7 +11,8 @@ namespace app {
 /// How long frames take. Where OpenGL is software, waits for it before and after, which costs nothing there,
 /// and knows the very frame's time. A graphics card must not be waited for, as it works on one frame while
 /// the next is prepared: there, timer queries tell some frames later what a frame took, and a frame's time is
-/// what the processor or the card took, whichever was more.
+/// what the processor or the card took, whichever was more. Where the card's queries do not answer, the
+/// processor's time is all that is known.
 class FrameTimer {
   public:
     /// Needs a current context. `waits`: as if OpenGL were software, or not; for tests.
@@ -25,14 +26,9 @@ class FrameTimer {
   private:
     bool waits_;
     std::chrono::steady_clock::time_point start_;
-    struct Query {
-        reflection::gl::TimerQuery query;
-        bool pending = false;
-    };
-    std::array<Query, 4> queries_;  ///< used in turns; frames in flight
-    std::size_t next_ = 0;
-    bool open_ = false;
-    double gpuMs_ = 0;
+    std::array<reflection::gl::TimerQuery, QueryTurns::slots> queries_;
+    QueryTurns turns_;
+    std::size_t running_ = 0;
 };
 
 }  // namespace app

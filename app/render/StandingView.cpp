@@ -1,7 +1,9 @@
 #include "app/render/StandingView.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <utility>
 
 namespace app {
@@ -12,6 +14,10 @@ namespace {
 /// need not change.
 constexpr double unnoticed = 1;
 constexpr double unnoticedTurn = 0.02;  ///< radians
+/// Pixels by which tiles of a vehicle may lag behind it, until all of it is of the new picture.
+constexpr double lag = 8;
+// Frames that this takes: what is fast by itself changes more than its detail does.
+constexpr int leastFrames = 2, mostFrames = 32;
 /// Names of windows, after those of vehicles and signals.
 constexpr std::uint64_t firstWindow = std::uint64_t{1} << 33;
 
@@ -37,9 +43,21 @@ void StandingView::show(const PassView& pass, std::span<const vehicles::VehicleP
                         const std::function<city::Aabb(const vehicles::VehiclePose&)>& boundsOf,
                         std::span<const city::Aabb> alwaysLive, ViewTarget& target) {
     if (target.dissolving()) {
+        // In which those vehicles change over that are there and were there before.
+        std::map<std::uint64_t, glm::dvec3> before;
+        for (const vehicles::VehiclePose& was : drawn_.poses) before[was.id] = was.position;
+        std::map<std::uint64_t, int> frames;
+        for (const vehicles::VehiclePose& is : poses)
+            if (const auto was = before.find(is.id); was != before.end()) {
+                const double far = std::max(glm::distance(is.position, pass.eye), 1e-3);
+                const double moved = glm::distance(was->second, is.position) * pass.pixelsPerRadian / far;
+                int& most = frames.try_emplace(is.id, mostFrames).first->second;
+                most = std::clamp(static_cast<int>(lag / std::max(moved, 1e-3)), leastFrames, most);
+            }
         const auto keepLive = [&](std::uint64_t name, const city::Aabb& box) {
+            const auto found = frames.find(name);
             if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size_))
-                target.keepLive(name, *pixels);
+                target.keepLive(name, *pixels, found == frames.end() ? 1 : found->second);
         };
         findChanges(
             held_, poses, colours, heads_, lighting_.sunDirection, boundsOf,

@@ -39,7 +39,9 @@ class ViewTarget {
     void prepareDissolving(glm::ivec2 size);
     bool dissolving() const { return dissolve_.active(); }
     /// Pixels that show the next pictures already: see Dissolve.
-    void keepLive(std::uint64_t name, const glm::ivec4& pixels) { dissolve_.keepLive(name, pixels); }
+    void keepLive(std::uint64_t name, const glm::ivec4& pixels, int frames = 1) {
+        dissolve_.keepLive(name, pixels, frames);
+    }
     /// The next picture is shown whole.
     void endDissolving() { dissolve_.stop(); }
 

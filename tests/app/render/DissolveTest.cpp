@@ -82,6 +82,39 @@ TEST(DissolveTest, whatMovesIsLiveInEveryFrameWhereItIsAndWhereItWas) {
     EXPECT_EQ(painted.frame[12 * 400 + 12], -1);
 }
 
+TEST(DissolveTest, whatMovesChangesOverTileByTileAndIsLiveThen) {
+    const glm::ivec2 size(640, 400);
+    const glm::ivec4 box(37, 21, 517, 341);
+    const std::size_t area = 480 * 320;
+    for (const int frames : {2, 5, 24}) {
+        Dissolve dissolve;
+        dissolve.start(size, 1 << 20);
+        std::vector<bool> before(static_cast<std::size_t>(size.x * size.y), false);
+        std::size_t last = 0;
+        for (int frame = 1; frame <= frames + 2; ++frame) {
+            dissolve.keepLive(4, box, frame == 1 ? frames : 1);  // as when it was named first
+            Painted now(size);
+            for (const glm::ivec4& r : dissolve.advance()) {
+                ASSERT_GE(std::min(r.x - box.x, r.y - box.y), 0);
+                ASSERT_LE(std::max(r.z - box.z, r.w - box.w), 0);
+                now.add(r, 0);
+            }
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < before.size(); ++i) {
+                ASSERT_FALSE(before[i] && now.frame[i] < 0) << "live, then not";
+                before[i] = now.frame[i] >= 0;
+                count += before[i] ? 1 : 0;
+            }
+            const double share = std::min(1.0, static_cast<double>(frame) / frames);
+            EXPECT_NEAR(static_cast<double>(count), share * static_cast<double>(area), 0.06 * area)
+                << frame << " of " << frames;
+            EXPECT_LE(count - last, area / static_cast<std::size_t>(frames) + area / 12);
+            last = count;
+        }
+        EXPECT_EQ(last, area);
+    }
+}
+
 TEST(ChangedPartsTest, aBoxesPixelsHoldAllOfIt) {
     SeededRandom random(5);
     const glm::ivec2 size(640, 360);
