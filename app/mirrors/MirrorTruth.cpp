@@ -44,16 +44,15 @@ city::Mesh plainMesh(const LitMesh& lit) {
     return plainMesh(positions, lit.indices);
 }
 
-/// The direction that a facet reflects into; the middle one for no roughness.
-glm::dvec3 reflectedAt(const reflection::MirrorPlane& mirror, const glm::dvec3& in, Random& random) {
-    const double roughness = static_cast<double>(mirror.surface().roughness);
-    const glm::dvec3& n = mirror.normal();
-    if (roughness <= 0) return mirror.mirroredDirection(in);
+/// The direction that a facet reflects into; the middle one for no roughness. `n`: the surface's normal.
+glm::dvec3 reflectedAt(const glm::dvec3& n, double roughness, const glm::dvec3& in, Random& random) {
+    const glm::dvec3 middle = in - 2 * glm::dot(n, in) * n;
+    const double facing = -glm::dot(in, n);
+    if (roughness <= 0 || facing <= 0) return middle;
     const double deviation = roughness * roughness * std::sqrt(0.5);
     const glm::dvec3 u =
         glm::normalize(glm::cross(n, std::abs(n.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
     const glm::dvec3 v = glm::cross(n, u);
-    const double facing = -glm::dot(in, n);
     for (int attempt = 0; attempt < 32; ++attempt) {
         const double radius = deviation * std::sqrt(-2 * std::log(1 - random.unit()));
         const double angle = 6.283185307179586 * random.unit();
@@ -65,7 +64,7 @@ glm::dvec3 reflectedAt(const reflection::MirrorPlane& mirror, const glm::dvec3& 
         const glm::dvec3 out = in - 2 * glm::dot(in, m) * m;
         if (glm::dot(out, n) > 0) return out;
     }
-    return mirror.mirroredDirection(in);
+    return middle;
 }
 
 /// Where a wave throws what falls on it; as a smooth mirror would, where that is into the water.
@@ -173,14 +172,18 @@ struct MirrorTruth::Impl {
             path.rough = path.rough || plane.surface().roughness > 0;
             const MirrorWorld::Flat& mirror = world.mirrors[hit.part - flats];
             if (mirror.fade > 0) path.fading += 1 / mirror.fade;
-            path.direction = mirror.ripples.any() ? reflectedByRipples(mirror, path.origin, path.direction)
-                                                  : reflectedAt(plane, path.direction, path.random);
+            path.direction = mirror.ripples.any()
+                                 ? reflectedByRipples(mirror, path.origin, path.direction)
+                                 : reflectedAt(plane.normal(), static_cast<double>(plane.surface().roughness),
+                                               path.direction, path.random);
         } else {
             path.curved = 1;
             const glm::dvec3 n = glm::normalize(
                 interpolated(world.curved[hit.part - balls].mesh, hit, &LitMesh::Corner::normal));
-            const glm::dvec3 out = path.direction - 2 * glm::dot(path.direction, n) * n;
-            path.direction = glm::normalize(out);
+            const auto roughness =
+                static_cast<double>(world.curved[hit.part - balls].reflector.surface.roughness);
+            path.rough = path.rough || roughness > 0;
+            path.direction = glm::normalize(reflectedAt(n, roughness, path.direction, path.random));
         }
         return true;
     }

@@ -27,7 +27,7 @@ struct TracedPicture {
 };
 
 /// A MirrorWorld as rays see it (Embree): exact reflections in flat mirrors; in curved ones at the
-/// interpolated normal, as the rasteriser shades them, but from the very point. Rough flat mirrors: normals
+/// interpolated normal, as the rasteriser shades them, but from the very point. Rough mirrors: normals
 /// of microfacets with Gaussian slopes of variance roughness^4 / 2 on each axis, in the proportion in which
 /// they are visible, without shadowing; every mirror on the way is rough at every sample.
 class MirrorTruth {

@@ -62,6 +62,8 @@ MirrorStage::MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::
           reflection::MirrorPassOptions same = options;
           same.environments = curved;
           same.distances = same.distances || world.needsDistances();
+          for (const MirrorWorld::Curved& c : world.curved)
+              same.prefilter = same.prefilter || c.reflector.surface.roughness > 0;
           return same;
       }())) {}
 MirrorStage::~MirrorStage() = default;

@@ -121,6 +121,7 @@ struct MirrorWorldRenderer::Impl {
 
     void setState() const {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
         glEnable(GL_DEPTH_TEST);
         glDepthFunc(GL_GEQUAL);
         glDepthMask(GL_TRUE);
@@ -209,6 +210,8 @@ struct MirrorWorldRenderer::Impl {
                 glBindTextureUnit(8, environment[c]);
                 p.set("reflectance", world.curved[c].reflector.surface.reflectance);
                 p.set("tint", world.curved[c].tint);
+                p.set("glossAngle", static_cast<float>(reflection::glossAngle(
+                                        static_cast<double>(world.curved[c].reflector.surface.roughness))));
                 p.set("mapCentre", glm::vec3(world.curved[c].reflector.centre - view.eye));
                 draw(g.curved[c]);
             }

@@ -29,6 +29,7 @@ uniform vec4 mapLimits;        // middles of its outermost texels
 #elif defined(CUBE)
 layout(binding = 8) uniform samplerCube map;
 vec4 mapTowards(vec3 direction) { return textureLod(map, direction, 0.0); }
+vec3 mapAtLevel(vec3 direction, float level) { return textureLod(map, direction, level).rgb; }
 #elif defined(PAIR)
 layout(binding = 8) uniform sampler2DArray map;
 // Halves look along +z and -z: see paraboloidView.
@@ -37,6 +38,32 @@ vec4 mapTowards(vec3 direction) {
     bool up = r.z >= 0.0;
     vec3 q = up ? vec3(r.x, -r.y, -r.z) : r;
     return textureLod(map, vec3(0.5 + 0.5 * q.xy / (1.0 - q.z), up ? 0.0 : 1.0), 0.0);
+}
+vec3 mapAtLevel(vec3 direction, float level) {
+    vec3 r = normalize(direction);
+    bool up = r.z >= 0.0;
+    vec3 q = up ? vec3(r.x, -r.y, -r.z) : r;
+    return textureLod(map, vec3(0.5 + 0.5 * q.xy / (1.0 - q.z), up ? 0.0 : 1.0), level).rgb;
+}
+#endif
+
+#if defined(CUBE) || defined(PAIR)
+uniform float glossAngle;  // radians; see reflection/planar/Gloss.h
+// Light under a Gaussian about a direction, `along` and `across`: directions by one deviation each. Half of the variance is the mip
+// level's (a quarter of a texel's square), half that of nine lookups with the weights of Gauss and Hermite: no texel shows.
+vec3 mapBlurred(vec3 direction, vec3 along, vec3 across) {
+    float wide = length(along), narrow = max(length(across), 0.5 * wide);
+    float texel = 2.0 / float(textureSize(map, 0).x);
+    float level = max(log2(1.4142136 * narrow / texel), 0.0);
+    vec3 sum = vec3(0.0);
+    along *= sqrt(max(1.0 - 0.5 * narrow * narrow / (wide * wide), 0.0)) * 1.7320508;
+    across *= 0.7071068 * 1.7320508;
+    for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j) {
+            float weight = (i == 0 ? 4.0 : 1.0) * (j == 0 ? 4.0 : 1.0) / 36.0;
+            sum += weight * mapAtLevel(direction + float(i) * along + float(j) * across, level);
+        }
+    return sum;
 }
 #endif
 
@@ -145,10 +172,22 @@ void main() {
     at *= min(1.0, 1.0 / max(length(at), 1e-9));
     light = textureLod(map, clamp((0.5 + 0.5 * at) * mapPart.xy + mapPart.zw, mapLimits.xy, mapLimits.zw), 0.0).rgb;
 #else
+    vec3 seen = r;
 #ifdef PARALLAX
-    r = seenFromCentre(relative - mapCentre, r);
+    seen = seenFromCentre(relative - mapCentre, r);
 #endif
-    light = mapTowards(r).rgb;
+    if (glossAngle > 0.0) {
+        // `seen` is r and a share of the way from the centre: per radian about r what is met moves by its distance.
+        float facing = clamp(-dot(d, normalize(normal)), 1e-3, 1.0), whole = length(seen);
+        vec3 within = normalize(normal) + facing * d;
+        float size = length(within);
+        vec3 e1 = size > 1e-4 ? within / size : normalize(cross(d, abs(d.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
+        e1 = reflect(e1, normalize(normal));
+        vec3 e2 = cross(r, e1), unit = seen / whole;
+        light = mapBlurred(unit, glossAngle / whole * (e1 - dot(e1, unit) * unit), glossAngle * facing / whole * (e2 - dot(e2, unit) * unit));
+    } else {
+        light = mapTowards(seen).rgb;
+    }
 #endif
 #endif
     colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, alpha);

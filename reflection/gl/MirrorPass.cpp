@@ -140,6 +140,7 @@ struct MirrorPass::Impl {
     void publish(const EnvironmentJob& job, MirrorScene& scene) {
         // What was shown so far becomes the next one to be drawn.
         std::swap(environments[job.curved], spare);
+        if (options.prefilter) glGenerateTextureMipmap(environments[job.curved].name());
         scene.publish(job, environments[job.curved].name());
     }
 
@@ -158,8 +159,10 @@ struct MirrorPass::Impl {
         }
         if (spare) return;
         const GLenum format = gl::glFormat(environmentFormat());
-        spare = cube ? gl::Texture::cube(format, size) : gl::Texture::array2D(format, size, size, 2);
-        spare.filter(GL_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
+        const int levels = options.prefilter ? gl::mipLevels(size) : 1;
+        spare = cube ? gl::Texture::cube(format, size, levels)
+                     : gl::Texture::array2D(format, size, size, 2, levels);
+        spare.filter(levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR, GL_LINEAR).wrap(GL_CLAMP_TO_EDGE);
     }
 
     void count() {
@@ -169,8 +172,9 @@ struct MirrorPass::Impl {
         counters.texels = maps.drawn.texels + faceTexels;
         const std::uint64_t face =
             static_cast<std::uint64_t>(faceSize) * static_cast<std::uint64_t>(faceSize);
-        const std::uint64_t map =
-            face * gl::bytesOf(environmentFormat()) * (options.environments == CurvedMaps::cube ? 6u : 2u);
+        const std::uint64_t map = (options.prefilter ? face * 4 / 3 : face) *
+                                  gl::bytesOf(environmentFormat()) *
+                                  (options.environments == CurvedMaps::cube ? 6u : 2u);
         counters.environmentBytes = 0;
         for (const gl::Texture& t : environments)
             if (t) counters.environmentBytes += map;

@@ -27,6 +27,8 @@ struct MirrorPassOptions {
     /// looked up where a ray ends. False: the paper's, for which all lies infinitely far.
     bool nearness = false;
     bool distances = false;  ///< all mirrors' maps have them: for bumped ones, and those that fade
+    bool prefilter =
+        false;  ///< complete environment maps have all their mip levels: for rough curved mirrors
     CurvedMaps environments =
         CurvedMaps::cube;  ///< what `publish` hands out: cube maps or pairs of paraboloids
 };

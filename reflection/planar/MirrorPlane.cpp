@@ -14,10 +14,6 @@ bool finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-float unit(float v) {
-    return v >= 0 ? std::min(v, 1.f) : 0.f;  // NaN compares false
-}
-
 MirrorStatus statusOf(const MirrorSurface& surface) {
     const glm::vec3& f = surface.reflectance;
     if (!finite(glm::dvec3(f)) || !std::isfinite(surface.roughness)) return MirrorStatus::notFinite;
@@ -133,19 +129,6 @@ double MirrorPlane::sideTolerance(const glm::dvec3& p) const {
 
 glm::dmat3 MirrorPlane::reflection() const {
     return glm::dmat3(1) - 2.0 * glm::outerProduct(normal_, normal_);
-}
-
-glm::dmat4 MirrorPlane::reflectionMatrix() const {
-    glm::dmat4 m(reflection());
-    m[3] = glm::dvec4(2 * glm::dot(normal_, point_) * normal_, 1);
-    return m;
-}
-
-MirrorPlane MirrorPlane::withSurface(const MirrorSurface& surface) const {
-    MirrorPlane other = *this;
-    for (int i = 0; i < 3; ++i) other.surface_.reflectance[i] = unit(surface.reflectance[i]);
-    other.surface_.roughness = unit(surface.roughness);
-    return other;
 }
 
 bool coplanar(const MirrorPlane& a, const MirrorPlane& b, double tolerance) {

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <string_view>
@@ -56,15 +55,9 @@ class MirrorPlane {
     /// p's mirror image. Exact to a few roundings of |p - point|.
     glm::dvec3 mirrored(const glm::dvec3& p) const { return p - 2 * signedDistance(p) * normal_; }
     glm::dvec3 mirroredDirection(const glm::dvec3& d) const { return d - 2 * glm::dot(normal_, d) * normal_; }
-    /// The linear part of the reflection: symmetric, its own inverse, determinant -1.
+    /// The linear part of the textbook's M (Real-Time Rendering 9.3.1): symmetric, its own inverse,
+    /// determinant -1. Its translation is left to `mirrored`, which does not round at the origin's distance.
     glm::dmat3 reflection() const;
-    /// worldFromMirroredWorld, the textbook's M (Real-Time Rendering 9.3.1). For points far from the origin
-    /// `mirrored` is the better way: here the translation is rounded at their magnitude.
-    glm::dmat4 reflectionMatrix() const;
-
-    /// The same place with another surface. Precondition: the surface is valid (`make` refuses others);
-    /// values are clamped otherwise, NaN to 0.
-    MirrorPlane withSurface(const MirrorSurface& surface) const;
 
   private:
     MirrorPlane() = default;

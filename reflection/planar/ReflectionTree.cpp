@@ -92,12 +92,6 @@ std::vector<ReflectionStep> ReflectionTree::stepsOf(std::uint32_t root) const {
     return steps;
 }
 
-std::uint64_t ReflectionTree::planarBytes(std::uint32_t bytesPerTexel) const {
-    std::uint64_t texels = 0;
-    for (const glm::ivec2& s : levelSize) texels += std::uint64_t(s.x) * static_cast<std::uint64_t>(s.y);
-    return texels * bytesPerTexel;
-}
-
 MapMemory paperMemory(const TreeSettings& settings, std::size_t mirrors, std::size_t curved,
                       std::uint32_t bytesPerTexel) {
     const std::uint64_t map =

@@ -191,9 +191,6 @@ struct ReflectionTree {
     std::vector<ReflectionStep> environmentSteps() const;
     /// The steps of one caller's view, to be taken after its own scene is drawn.
     std::vector<ReflectionStep> stepsOf(std::uint32_t root) const;
-    /// Bytes of all levels' maps at so many a texel, and of environment maps (one of each; a second one where
-    /// the map is replaced only when complete is the executor's).
-    std::uint64_t planarBytes(std::uint32_t bytesPerTexel = 4) const;
 };
 
 /// For each image, the nodes met in it, in order.

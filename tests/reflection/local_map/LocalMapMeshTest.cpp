@@ -187,6 +187,7 @@ TEST(LocalMapMeshTest, aStepIsRefinedAtItsEdgeAlone) {
         if (q.size == 1) ++smallest;
         if (q.x <= edge && edge <= q.x + q.size) {
             EXPECT_EQ(q.size, 1);
+            EXPECT_FALSE(q.smooth) << "nothing lies between the roof and the ground";
         } else {
             EXPECT_TRUE(q.smooth);
         }

@@ -343,6 +343,37 @@ TEST(ReferenceLookupTest, skyStaysSkyAndCoincidentCentresReadStraight) {
     EXPECT_GT(asked, 3000);
 }
 
+TEST(ReferenceLookupTest, aSurfaceIsNoSkyUpToHalfTheDistanceThatStandsForIt) {
+    const int n = 16;
+    for (const double distance : {100.0, 1000.0, 3500.0, 5000.0}) {
+        const PackedReferenceMap around = mapOf(
+            [&](const glm::dvec3&, const glm::dvec3& d) {
+                return SceneHit{distance / glm::length(d), 0, glm::dvec3(0.5)};
+            },
+            glm::dvec3(0), 32);
+        const Candidate same{&around, glm::vec3(0)};
+        LocalMap map = emptyMap(n);
+        for (int face = 0; face < 6; ++face) {
+            const std::vector<float> start(static_cast<std::size_t>(n * n),
+                                           1.0f / static_cast<float>(distance));
+            lookUpRefined(face, start, std::span(&same, 1), {}, map);
+            for (int i = 0; i < n * n; ++i) {
+                const double length =
+                    static_cast<double>(glm::length(cubeDirection(face, glm::vec2(i % n, i / n) + 0.5f, n)));
+                const float depth = map.depth[map.faceOffset(face) + static_cast<std::size_t>(i)];
+                // The start is the ray's own parameter: on a cube's face up to sqrt(3) times as far.
+                if (distance / length < 0.45 * static_cast<double>(PackedReferenceMap::skyDepth) &&
+                    distance < 0.45 * static_cast<double>(PackedReferenceMap::skyDepth)) {
+                    EXPECT_TRUE(std::isfinite(depth)) << distance << " m, face " << face;
+                }
+                if (distance / length > 0.55 * static_cast<double>(PackedReferenceMap::skyDepth)) {
+                    EXPECT_EQ(depth, infinity) << distance << " m, face " << face;
+                }
+            }
+        }
+    }
+}
+
 TEST(ReferenceLookupTest, aStartInTheSkyComesBackToTheMapsSurface) {
     // What a heightfield lacks (a lamp post, a wire), or a mesh has smeared over a silhouette, starts 8 km
     // off.

@@ -141,7 +141,7 @@ TEST(ReflectionTree, CapKeepsTheMostVisibleAndTheirParents) {
 
 TEST(ReflectionTree, EndsWhereReflectancesMultiplyToNothing) {
     CountedScene s = mirrorPair();
-    for (Mirror& m : s.mirrors) m.plane = m.plane.withSurface({glm::vec3(0.1f), 0});
+    for (Mirror& m : s.mirrors) m.plane = MirrorPlane::make(m.plane.corners(), {glm::vec3(0.1f), 0}).mirror;
     TreeSettings settings;
     settings.depth = 8;
     settings.cutOff = 0.05;

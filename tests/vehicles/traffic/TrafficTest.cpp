@@ -292,6 +292,63 @@ TEST(Traffic, nobodyPassesARedSignal) {
     EXPECT_GT(crossings, 20);
 }
 
+/// A lane around a circle, in four pieces.
+city::RoadNetwork ring(double radius) {
+    city::RoadNetwork roads;
+    const auto arc = [&](double from, double to) {
+        std::vector<glm::vec3> line;
+        const int pieces = std::max(2, static_cast<int>((to - from) * 40));
+        for (int i = 0; i <= pieces; ++i) {
+            const double a = 2 * std::numbers::pi * (from + (to - from) * i / pieces);
+            line.emplace_back(radius * std::cos(a), radius * std::sin(a), 0);
+        }
+        return line;
+    };
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        city::Lane lane;
+        lane.centreLine = arc(0.25 * i, 0.25 * i + 0.23);
+        lane.connections = {i};
+        roads.lanes.push_back(lane);
+        city::Connection connection;
+        connection.fromLane = i;
+        connection.toLane = (i + 1) % 4;
+        connection.junction = i;
+        connection.centreLine = arc(0.25 * i + 0.23, 0.25 * (i + 1));
+        roads.connections.push_back(connection);
+        city::Junction junction;
+        junction.position = connection.centreLine.front();
+        junction.connections = {i};
+        roads.junctions.push_back(junction);
+    }
+    return roads;
+}
+
+TEST(Traffic, aQueueDrivesAsFastAsItsGapsAllow) {
+    // The intelligent driver model in equilibrium: gap^2 (1 - (v / wanted)^4) = (1.8 m + 1.2 s v)^2; far
+    // below the wanted speed, v = (gap - 1.8 m) / 1.2 s.
+    constexpr double radius = 64;
+    const auto roads = ring(radius);
+    VehicleKind kind;
+    for (const std::uint32_t cars : {30u, 36u}) {
+        TrafficOptions options;
+        options.cars = cars;
+        options.step = 0.05;
+        Traffic traffic(roads, {kind}, options);
+        ASSERT_EQ(traffic.size(), cars);
+        const double gap = 2 * std::numbers::pi * radius / cars - kind.length;
+        double sum = 0;
+        int count = 0;
+        for (int i = 0; i < 6000; ++i) {
+            traffic.step();
+            if (i < 3000) continue;
+            for (const VehiclePose& p : traffic.poses()) sum += p.speed;
+            count += static_cast<int>(cars);
+        }
+        const double expected = (gap - 1.8) / 1.2;
+        EXPECT_NEAR(sum / count, expected, 0.1 * expected) << cars;
+    }
+}
+
 TEST(Traffic, lanesAreChangedOnAnAvenue) {
     city::StreetGraph graph;
     test_streets::addNode(graph, 0, 0);
