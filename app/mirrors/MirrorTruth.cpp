@@ -92,6 +92,7 @@ struct MirrorTruth::Impl {
         }
         for (const MirrorWorld::Curved& c : world.curved) plain.push_back(plainMesh(c.mesh));
         std::vector<reflection::TracedMeshes::Part> parts;
+        parts.reserve(plain.size());
         for (const city::Mesh& m : plain) parts.push_back({&m, false, nullptr});
         scene.place(meshes.add(parts), glm::mat4(1));
         scene.commit();
