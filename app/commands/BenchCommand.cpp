@@ -37,6 +37,12 @@ std::vector<Bench> allBenches() {
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},
          benchStills},
+        {{"streets",
+          "two facing shops with a car between, a car's door with a window in it, a wet street at night: "
+          "pictures in "
+          "--out",
+          cellOption | pictureOptions | outOptions},
+         benchStreets},
         {{"tracer", "rays per second against heightfields, with an exact check; beside Embree", cellOption},
          benchTracer},
         {{"windows",

@@ -25,6 +25,7 @@ int benchCars(const Options& options);
 int benchEmpty(const Options& options);
 int benchGovernor(const Options& options);
 int benchStills(const Options& options);
+int benchStreets(const Options& options);
 int benchWindows(const Options& options);
 int benchTracer(const Options& options);
 int benchLocalMap(const Options& options);

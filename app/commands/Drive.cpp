@@ -218,6 +218,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
                                       });
     PlanarReflections planar;
     if (settings_.mirrors) planar.plan = &mirrorPlan_;
+    planar.wet = settings_.weather == Weather::wet;
     stats.mirrors = mirrorPlan_.counters;
     if (settings_.method != ReflectionMethod::none && engine_) {
         std::vector<SeenVehicle> seen;

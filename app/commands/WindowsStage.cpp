@@ -22,19 +22,25 @@ constexpr int framesOfAge = 8;
 }  // namespace
 
 WindowsStage::WindowsStage(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                           glm::ivec2 resolution, const std::vector<WindowsCase>& cases)
+                           glm::ivec2 resolution, const std::vector<WindowsCase>& cases,
+                           const ReflectionSettings& reflections)
     : scene_(scene), renderer_(renderer), planner_(scene.glass.fronts), target_(resolution) {
     renderer_.setGlass(scene.glass.fronts);
     for (const WindowsCase& what : cases) {
         WindowsRun& run = runs_.emplace_back();
         run.what = what;
-        run.engine = std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models,
-                                                        ReflectionSettings{});
+        run.engine =
+            std::make_unique<ReflectionEngine>(*prepared.tracer, prepared.maps, scene.models, reflections);
     }
 }
 
 FrameScene WindowsStage::frameOf(const CarsStage& set) const {
     return assembleFrame(scene_.city, *set.traffic, scene_.lighting, {set.view});
+}
+
+Image8 WindowsStage::picture(WindowsRun& run, const FrameScene& frame, int times) {
+    for (int i = 0; i < std::max(times, 1); ++i) draw(run, frame);
+    return readPixels(target_.framebuffer(), resolution());
 }
 
 MirrorPlan WindowsStage::planOf(const WindowsCase& what, const FrameScene& frame) const {
@@ -59,7 +65,8 @@ double WindowsStage::draw(WindowsRun& run, const FrameScene& frame) {
     const Stopwatch watch;
     renderer_.prepare(frame);
     const MirrorPlan plan = planOf(run.what, frame);
-    const PlanarReflections planar{run.what.glass ? &plan : nullptr, 0};
+    const PlanarReflections planar{run.what.glass ? &plan : nullptr, 0,
+                                   run.what.settings.wetRoad.has_value()};
     const ReflectionPlan& maps = run.engine->update(frame, seenBy(frame, planar), renderer_);
     renderer_.drawView(frame.views.front(), {run.engine->textures(), maps.slots}, target_.framebuffer(),
                        planar);
@@ -143,7 +150,7 @@ void WindowsStage::compare(const FrameScene& frame, const WindowsTruth& truth,
     std::vector<SeenVehicle> seen;
     for (const WindowsRun& run : runs_) {
         plans.push_back(planOf(run.what, frame));
-        for (const SeenVehicle& v : seenBy(frame, {run.what.glass ? &plans.back() : nullptr, 0})) {
+        for (const SeenVehicle& v : seenBy(frame, {run.what.glass ? &plans.back() : nullptr})) {
             const auto known = std::ranges::find(seen, v.index, &SeenVehicle::index);
             if (known == seen.end())
                 seen.push_back(v);
@@ -157,7 +164,8 @@ void WindowsStage::compare(const FrameScene& frame, const WindowsTruth& truth,
     std::vector<glm::vec3> before;
     for (std::size_t i = 0; i < runs_.size() && !interrupted(); ++i) {
         WindowsRun& run = runs_[i];
-        const PlanarReflections planar{run.what.glass ? &plans[i] : nullptr, 0};
+        const PlanarReflections planar{run.what.glass ? &plans[i] : nullptr, 0,
+                                       run.what.settings.wetRoad.has_value()};
         const auto picture = [&] {
             renderer_.drawView(frame.views.front(), {engine.textures(), maps.slots}, target_.framebuffer(),
                                planar);

@@ -65,7 +65,8 @@ class WindowsStage {
     static constexpr std::uint32_t framesBefore = 3;
 
     WindowsStage(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                 glm::ivec2 resolution, const std::vector<WindowsCase>& cases);
+                 glm::ivec2 resolution, const std::vector<WindowsCase>& cases,
+                 const ReflectionSettings& reflections = {});
 
     /// All cases in turn on `frames` frames, those with less on the first of them; ends at an interrupt.
     void measure(CarsStage& set, std::uint32_t frames, Progress& progress);
@@ -81,6 +82,8 @@ class WindowsStage {
     std::vector<WindowsRun>& runs() { return runs_; }
     glm::ivec2 resolution() const { return target_.size(); }
     FrameScene frameOf(const CarsStage& set) const;
+    /// A case's picture of a frame after it was drawn so many times, at least once.
+    Image8 picture(WindowsRun& run, const FrameScene& frame, int times);
 
   private:
     double draw(WindowsRun& run, const FrameScene& frame);

@@ -133,6 +133,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     give(behindOthers);
     if (road) {
         mirrors.push_back({MirrorPlan::road, *road});
+        mirrors.back().texels = wetTexels;
         plan.fronts.push_back(MirrorPlan::road);
     }
     reflection::groupCoplanar(mirrors);
@@ -148,6 +149,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     tree.depth = settings.depth;
     tree.economies = settings.economies;
     tree.mostMaps = settings.maps;
+    if (road) tree.cutOff = wetCutOff;
     tree.leastPixels = settings.leastPixels;
     tree.levelScale = settings.levelScale;
     plan.tree = reflection::reflectionTree(eyes, scene, tree);

@@ -50,6 +50,12 @@ struct MirrorCounters {
 
 /// Roughness of the film of water on asphalt: its microfacets spread what it mirrors by 5 degrees.
 inline constexpr float wetRoughness = 0.25f;
+/// Texels of what wet ground mirrors for each pixel: films blur it over tens of pixels, ripples shake it in
+/// puddles.
+inline constexpr double wetTexels = 0.5;
+/// Share of the light below which reflections in a row with wet ground among them are left out: a wet road in
+/// a shop window is 0.024. Where it is left out, ground is wet without an image.
+inline constexpr double wetCutOff = 0.03;
 
 /// What the flat mirrors of one frame need: plain data.
 struct MirrorPlan {

@@ -142,23 +142,27 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
     return counts;
 }
 
-CityPass::Counts CityPass::drawWet(const PassView& view, PassTarget target, const Wet& wet) {
+CityPass::Counts CityPass::drawWet(const PassView& view, PassTarget target, const Wet* wet) {
     Counts counts;
-    reflection::gl::Program& program = wetPrograms_[static_cast<std::size_t>(target)];
+    reflection::gl::Program& program = wetPrograms_[static_cast<std::size_t>(target)][wet != nullptr ? 1 : 0];
     if (!program) {
         std::vector<std::string> defines{"WET"};
         if (target == PassTarget::cube) defines.emplace_back("CUBE");
+        if (wet != nullptr) defines.emplace_back("MIRROR");
         program = reflection::gl::Program::fromFiles({"city.vert", "wet_ground.frag"}, defines);
     }
-    program.set("planeHeight", static_cast<float>(wet.height - view.eye.z));
-    program.set("uvPerRadian", wet.uvPerRadian);
     program.set("filmAngle", static_cast<float>(reflection::glossAngle(wetRoughness)));
-    program.set("blurLevels", wet.map.blurred != 0 ? wet.map.blurLevels : 0);
-    program.set("uvFromFragment", wet.map.uvFromFragment);
-    program.set("uvLimits", wet.map.uvLimits);
-    program.set("blurredScale", wet.map.blurredScale);
-    glBindTextureUnit(8, wet.map.colour);
-    glBindTextureUnit(9, wet.map.blurred != 0 ? wet.map.blurred : wet.map.colour);
+    if (wet != nullptr) {
+        program.set("planeHeight", static_cast<float>(wet->height - view.eye.z));
+        program.set("uvPerRadian", wet->uvPerRadian);
+        program.set("uvPerNdc", wet->uvPerNdc);
+        program.set("blurLevels", wet->map.blurred != 0 ? wet->map.blurLevels : 0);
+        program.set("uvFromFragment", wet->map.uvFromFragment);
+        program.set("uvLimits", wet->map.uvLimits);
+        program.set("blurredScale", wet->map.blurredScale);
+        glBindTextureUnit(8, wet->map.colour);
+        glBindTextureUnit(9, wet->map.blurred != 0 ? wet->map.blurred : wet->map.colour);
+    }
     materials_.bind();
     Batch& batch = batches_[static_cast<std::size_t>(Coverage::solid)];
     batch.clear();

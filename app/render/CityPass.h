@@ -32,10 +32,12 @@ class CityPass {
     struct Wet {
         reflection::MirrorMap map;
         glm::vec2 uvPerRadian{1};  ///< texture coordinates of the map, near the middle of its image
+        glm::vec2 uvPerNdc{1};     ///< the same for the view's clip coordinates over w
         double height = 0;         ///< world z of the mirror
     };
-    /// Draws the ground that a view sees over itself as it looks after rain, depth as it was.
-    Counts drawWet(const PassView& view, PassTarget target, const Wet& wet);
+    /// Draws the ground that a view sees over itself as it looks after rain, depth as it was. Null: no map,
+    /// mean light and the sun in its place.
+    Counts drawWet(const PassView& view, PassTarget target, const Wet* wet);
 
     /// Patterns to texture unit 0, table to uniform buffer 1.
     void bindMaterials() const { materials_.bind(); }
@@ -55,7 +57,8 @@ class CityPass {
     };
     void useFor(Coverage coverage, bool instanced, PassTarget target);
 
-    std::array<reflection::gl::Program, 2> wetPrograms_;  ///< [target]; made when first needed
+    std::array<std::array<reflection::gl::Program, 2>, 2>
+        wetPrograms_;  ///< [target][with a map]; made when first needed
     CityGeometry geometry_;
     CityMaterials materials_;
     std::array<std::array<std::array<reflection::gl::Program, 2>, 2>, passTargetCount>

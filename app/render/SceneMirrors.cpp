@@ -14,9 +14,14 @@ constexpr float glassReach = 300;
 
 class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
   public:
-    Mirrors(Impl& impl, const MirrorPlan& plan, std::uint32_t root, const PassView& view,
+    Mirrors(Impl& impl, const PlanarReflections& planar, const PassView& view,
             const VehicleReflections& reflections)
-        : my_(impl), plan_(plan), root_(root), view_(view), reflections_(reflections) {}
+        : my_(impl),
+          plan_(*planar.plan),
+          root_(planar.root),
+          wet_(planar.wet),
+          view_(view),
+          reflections_(reflections) {}
 
     void drawNode(const reflection::ReflectionTree&, const reflection::ReflectionNode& node,
                   const reflection::MirrorTarget& target) override {
@@ -29,13 +34,15 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         my_.chosen.clear();
         for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
         // A coarse body's normals bend what its paint mirrors, which shows where its shape does not:
-        // vehicles are as fine in mirrors as outside them.
+        // vehicles are as fine in a mirror as outside it, and coarser only in mirrors in a row.
         PassView fine = pass;
-        fine.pixelsPerRadian /= share;
+        if (node.coarser > 0) fine.pixelsPerRadian *= 2;
         const VehiclePass::Counts vehicles = my_.vehiclePass.draw(
             fine, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
             static_cast<float>(my_.detail.vehicleTolerance));
         const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
+        if (wet_ && !isRoad(node) && !roadBelow(node))
+            triangles += my_.cityPass.drawWet(pass, PassTarget::cube, nullptr).triangles;
         const GlassPass::Counts glass = my_.drawPlainGlass(pass, PassTarget::cube, {&plan_, root_}, &node);
         my_.signalLamps.draw(pass, PassTarget::cube, my_.signalColours);
         // On a wet road shadows lie over what it mirrors: they follow it.
@@ -55,7 +62,7 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         const PassView pass = parent != nullptr ? passOf(*parent, 1) : view_;
         my_.setFrame(pass);
         if (isRoad(node)) {
-            drawRoad(node, map, parent, pass);
+            drawRoad(node, map, parent, pass, target);
             return;
         }
         my_.cityPass.bindMaterials();
@@ -79,16 +86,18 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         });
     }
     void drawRoad(const reflection::ReflectionNode& node, const reflection::MirrorMap& map,
-                  const reflection::ReflectionNode* parent, const PassView& pass) {
+                  const reflection::ReflectionNode* parent, const PassView& pass,
+                  const reflection::MirrorTarget& into) {
         CityPass::Wet wet;
         wet.map = map;
         const glm::vec2 used = glm::vec2(node.resolution) / map.texels;
         wet.uvPerRadian =
             0.5f * used * glm::vec2(glm::abs(node.clipFromView[0][0]), glm::abs(node.clipFromView[1][1]));
+        wet.uvPerNdc = 0.5f * glm::vec2(map.uvFromFragment) * glm::vec2(into.viewport.size());
         // The glass's distance from the eye behind it is that of the eye before it.
         wet.height = node.view.eye.z - node.glass.w / node.glass.z;
         const PassTarget target = parent != nullptr ? PassTarget::cube : PassTarget::view;
-        triangles += my_.cityPass.drawWet(pass, target, wet).triangles;
+        triangles += my_.cityPass.drawWet(pass, target, &wet).triangles;
         if (parent == nullptr || !my_.options.shadows) return;
         my_.chosen.clear();
         for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
@@ -98,6 +107,7 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
     Impl& my_;
     const MirrorPlan& plan_;
     std::uint32_t root_;
+    bool wet_;
     const PassView& view_;
     const VehicleReflections& reflections_;
 };
@@ -126,6 +136,18 @@ GlassPass::Counts SceneRenderer::Impl::drawPlainGlass(const PassView& pass, Pass
 
 void SceneRenderer::Impl::drawGlass(const PassView& pass, const VehicleReflections& reflections,
                                     const PlanarReflections& planar) {
+    const bool mirrorsRoad =
+        planar.plan != nullptr &&
+        std::ranges::any_of(planar.plan->tree.nodes, [&](const reflection::ReflectionNode& n) {
+            const auto mirrors = planar.plan->tree.mirrorsOf(n);
+            return n.root == planar.root && n.parent == reflection::ReflectionNode::none &&
+                   !mirrors.empty() && planar.plan->fronts[mirrors.front()] == MirrorPlan::road;
+        });
+    if (planar.wet && !mirrorsRoad) {
+        const CityPass::Counts ground = cityPass.drawWet(pass, PassTarget::view, nullptr);
+        counters.drawCalls += ground.drawCalls;
+        counters.triangles += ground.triangles;
+    }
     if (planar.plan == nullptr) {
         mirrorPass.reset();
         return;
@@ -140,7 +162,7 @@ void SceneRenderer::Impl::drawGlass(const PassView& pass, const VehicleReflectio
     if (!mirrorPass) mirrorPass = std::make_unique<reflection::MirrorPass>();
     mirrorPass->trim(planar.plan->tree);
     mirrorPass->resetCounters();
-    Mirrors mirrors(*this, *planar.plan, planar.root, pass, reflections);
+    Mirrors mirrors(*this, planar, pass, reflections);
     reflection::MirrorTarget target;
     target.framebuffer = viewTarget.framebuffer();
     target.viewport = target.scissor = {glm::ivec2(0), viewTarget.drawn()};

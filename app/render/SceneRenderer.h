@@ -49,6 +49,7 @@ struct VehicleReflections {
 struct PlanarReflections {
     const MirrorPlan* plan = nullptr;  ///< null: glass is as it is painted on the walls
     std::uint32_t root = 0;            ///< of the plan's tree: this view
+    bool wet = false;                  ///< it has rained: ground that no map serves shines by mean light
 };
 
 /// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models;

@@ -22,6 +22,9 @@ struct Mirror {
     /// Radians by which its reflections stray besides roughness, where it is bumped: what is drawn of them is
     /// that much larger than the mirror.
     double reach = 0;
+    /// Texels of its maps for each that they would have, (0, 1]: less for what is rough anyway. With
+    /// `Economies::resolution`; companions have the largest of theirs.
+    double texels = 1;
 };
 
 /// Numbers the groups of coplanar mirrors, from 0; those without a companion stay alone. Returns the number

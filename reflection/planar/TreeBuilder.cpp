@@ -266,9 +266,10 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     node.pixels = seen.portal.area * image.pixelsPerNdc;
     node.coarser = economies.detail ? image.coarser + 1 : 0;
     glm::vec3 reflectance(0);
-    double roughness = 0, stray = 0;
+    double roughness = 0, stray = 0, own = 0;
     for (std::uint32_t m : seen.mirrors) {
         stray = std::max(stray, scene_.mirrors[m].reach);
+        own = std::max(own, std::clamp(scene_.mirrors[m].texels, 1e-3, 1.0));
         reflectance = glm::max(reflectance, scene_.mirrors[m].plane.surface().reflectance);
         roughness = std::max(roughness, static_cast<double>(scene_.mirrors[m].plane.surface().roughness));
     }
@@ -278,11 +279,13 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     // A rough mirror's filter reaches beyond its edge, by some three standard deviations; a map whose texels
     // are not the picture's pixels is interpolated, a texel beyond.
     NdcRect seenThrough = seen.portal.bounds;
-    const bool texelsArePixels = image.grid == tree_.roots[image.root].size && settings_.levelScale >= 1;
+    const bool texelsArePixels =
+        image.grid == tree_.roots[image.root].size && settings_.levelScale >= 1 && own >= 1;
+    const double scale = std::pow(settings_.levelScale, image.level) * own;
     const bool larger = perspective && (roughness > 0 || stray > 0 || !texelsArePixels);
     if (larger) {
         const double reach = 3 * glossAngle(roughness) + stray;
-        const double texels = texelsArePixels ? 0 : 3 / std::pow(settings_.levelScale, image.level);
+        const double texels = texelsArePixels ? 0 : 3 / scale;
         const glm::dvec2 margin =
             reach * glm::dvec2(node.view.clipFromView[0][0], node.view.clipFromView[1][1]) +
             texels / glm::dvec2(image.grid);
@@ -305,7 +308,6 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         node.frustum = {node.glass};
     }
     if (economies.resolution && perspective) {
-        const double scale = std::pow(settings_.levelScale, image.level);
         node.crop = ndcOf(rect, image.grid);
         node.resolution = glm::max(glm::ivec2(glm::ceil(glm::dvec2(rect.size()) * scale)), glm::ivec2(1));
         node.scissor = {glm::ivec2(0), node.resolution};
@@ -321,9 +323,7 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         node.obliqueClipFromView = obliqueNear(drawn, plane).clipFromView;
     }
     // The filter of a rough mirror reaches farther than any polygon.
-    if (roughness <= 0 && stray <= 0)
-        outline(node, seen, image.grid,
-                texelsArePixels ? 1 : 2 / std::pow(settings_.levelScale, image.level));
+    if (roughness <= 0 && stray <= 0) outline(node, seen, image.grid, texelsArePixels ? 1 : 2 / scale);
     candidate.mirrors = std::move(seen.mirrors);
     push(std::move(candidate));
 }

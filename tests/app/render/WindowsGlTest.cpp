@@ -226,11 +226,22 @@ TEST_F(WindowsGlTest, wetGroundMirrorsWhatStandsOnItAndNothingElseChanges) {
         MirrorSettings settings;
         if (wet) settings.wetRoad = 0;
         const MirrorPlan plan = MirrorPlanner({}).plan(std::span(&view, 1), settings);
-        renderer.drawView(view, {}, target.framebuffer(), {&plan, 0});
+        renderer.drawView(view, {}, target.framebuffer(), {&plan, 0, wet});
         return readPixels(target.framebuffer(), size);
     };
     const Image8 dry = draw(false), wet = draw(true);
     EXPECT_EQ(renderer.counters().mirrorPasses, 1u);
+    // Without mirrors the ground is wet as well: another colour than when it is dry, and nothing else.
+    renderer.prepare(scene);
+    renderer.drawView(view, {}, target.framebuffer(), {nullptr, 0, true});
+    EXPECT_EQ(renderer.counters().mirrorPasses, 0u);
+    const Image8 plain = readPixels(target.framebuffer(), size);
+    const auto half = static_cast<std::size_t>(size.x * 4 * (size.y / 3));
+    std::size_t others = 0;
+    for (std::size_t i = half * 2; i < plain.rgba.size(); ++i) others += plain.rgba[i] != dry.rgba[i] ? 1 : 0;
+    EXPECT_GT(others, plain.rgba.size() / 12);
+    EXPECT_TRUE(std::equal(plain.rgba.begin(), plain.rgba.begin() + static_cast<std::ptrdiff_t>(half),
+                           dry.rgba.begin()));
     const reflection::EyeView eye = eyeViewOf(view);
     const auto red = [&](const Image8& image, const glm::dvec3& p, int dx = 0) {
         const glm::dvec4 clip = eye.clip(p);

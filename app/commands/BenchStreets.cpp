@@ -1,0 +1,98 @@
+#include <spdlog/spdlog.h>
+
+#include <glm/geometric.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/Benches.h"
+#include "app/commands/CityTriangles.h"
+#include "app/commands/PreparedScene.h"
+#include "app/commands/Version.h"
+#include "app/commands/WindowShots.h"
+#include "app/commands/WindowsStage.h"
+#include "app/frame/AssembleFrame.h"
+#include "app/frame/WetRoad.h"
+#include "app/report/AsideFile.h"
+#include "app/report/Picture.h"
+#include "app/report/ResultFile.h"
+
+namespace app {
+
+namespace {
+
+constexpr double nightHour = 23;
+/// Frames after which the maps of a standing view are as fine as they get.
+constexpr int framesOfAge = 8;
+constexpr std::uint32_t carsOnStreet = 30;
+
+struct Still {
+    std::string name;
+    std::optional<View> view;
+    Lighting lighting;
+    ReflectionMethod method = ReflectionMethod::mem;
+    bool wet = false;
+};
+
+}  // namespace
+
+int benchStreets(const Options& options) {
+    const std::filesystem::path first = options.out / "street_shops.png";
+    requireWritable(first);
+    RenderOptions rendering;
+    rendering.antialiasing = Antialiasing::msaa4;
+    PreparedScene stage(options, rendering);
+    const Scene& scene = stage.scene;
+    ResultFile results("streets", std::string(programVersion), stage.context.renderer());
+    std::vector<std::vector<std::string>> table{{"picture", "passes", "panes", "wet street"}};
+    if (!stage.reflections.complete) return reportBench(options, results, table);
+    const CarsStage set = setCarsStage(scene, stage.renderer, carsOnStreet, options.seed, options.resolution);
+    if (!set.traffic) throw std::runtime_error("the city has no street to look down.");
+    const FrameScene street = assembleFrame(scene.city, *set.traffic, scene.lighting, {set.view});
+    reflection::TriangleTracer triangles;
+    addCity(triangles, scene.city);
+    triangles.commit();
+    View low = set.view;
+    low.eye.z -= 2.4;  // from a bus driver's eyes to those of somebody in a van
+    // Maps of the city are of the day: at night each car's is drawn anew.
+    const std::vector<Still> stills{
+        {"shops", betweenShops(scene, street, triangles, options.resolution), scene.lighting},
+        {"door", windowInDoor(scene, street, triangles, options.resolution), scene.lighting},
+        {"night", low, lightingAt(nightHour), ReflectionMethod::rerender, true}};
+    for (const Still& still : stills) {
+        if (interrupted()) break;
+        if (!still.view) {
+            spdlog::warn("{}: no car of this street stands so that it could be shown; try another --seed",
+                         still.name);
+            continue;
+        }
+        FrameScene frame = street;
+        frame.views = {*still.view};
+        frame.lighting = still.lighting;
+        WindowsCase what{still.name, true, {}};
+        what.settings.depth = 3;
+        what.settings.maps = 16;
+        if (still.wet) {
+            const glm::mat4& v = still.view->viewFromWorld;
+            what.settings.wetRoad = roadHeightNear(
+                scene.city.roads, still.view->eye - 15.0 * glm::dvec3(v[0][2], v[1][2], v[2][2]));
+        }
+        ReflectionSettings settings;
+        settings.method = still.method;
+        WindowsStage drawn(scene, stage.reflections, stage.renderer, options.resolution, {what}, settings);
+        const Image8 image = drawn.picture(drawn.runs().front(), frame, framesOfAge);
+        const std::string file = "street_" + still.name + ".png";
+        writePng({image.size.x, image.size.y, image.rgba}, options.out / file);
+        const MirrorCounters& planned = drawn.runs().front().planned;
+        results.add({{"picture", file},
+                     {"city", options.city},
+                     {"passes", planned.passes},
+                     {"windows", planned.windows},
+                     {"wet_street", planned.road}});
+        table.push_back({file, std::to_string(planned.passes), std::to_string(planned.windows),
+                         planned.road ? "yes" : "no"});
+    }
+    return reportBench(options, results, table);
+}
+
+}  // namespace app
