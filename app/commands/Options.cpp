@@ -155,7 +155,7 @@ void addBudget(CLI::App& parser, Options& o, unsigned groups) {
                        .add_option_function<std::string>(
                            "--budget", [&o](const std::string& text) { parseBudget(text, o.budgetMs); },
                            "time of a frame to be held by method mem: detail follows the load; calibrates "
-                           "once, some seconds")
+                           "once, half a minute")
                        ->type_name("MS");
     if (!(groups & errorOptions)) return;
     parser
