@@ -8,8 +8,8 @@
 #include "app/commands/Benches.h"
 #include "app/commands/CityTriangles.h"
 #include "app/commands/PreparedScene.h"
+#include "app/commands/StreetShots.h"
 #include "app/commands/Version.h"
-#include "app/commands/WindowShots.h"
 #include "app/commands/WindowsStage.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/WetRoad.h"
@@ -28,7 +28,8 @@ constexpr std::uint32_t carsOnStreet = 30;
 
 struct Still {
     std::string name;
-    std::optional<View> view;
+    std::optional<StreetShot> shot;
+    std::string missing;  ///< what the city has not, where there is no shot
     Lighting lighting;
     ReflectionMethod method = ReflectionMethod::mem;
     bool wet = false;
@@ -54,31 +55,39 @@ int benchStreets(const Options& options) {
     triangles.commit();
     View low = set.view;
     low.eye.z -= 2.4;  // from a bus driver's eyes to those of somebody in a van
+    // Exposed as one would a photograph: for a street in the shade, and for dark paint, which mirrors 4%.
+    Lighting shaded = scene.lighting, dark = scene.lighting;
+    shaded.exposure *= 1.5f;
+    dark.exposure *= 4.0f;
     // Maps of the city are of the day: at night each car's is drawn anew.
     const std::vector<Still> stills{
-        {"shops", betweenShops(scene, street, triangles, options.resolution), scene.lighting},
-        {"door", windowInDoor(scene, street, triangles, options.resolution), scene.lighting},
-        {"night", low, lightingAt(nightHour), ReflectionMethod::rerender, true}};
+        {"shops", betweenShops(scene, street, triangles, options.resolution),
+         "no lane between two shop fronts, 8 to 30 m apart, that show each other", shaded},
+        {"door", windowInDoor(scene, street, triangles, options.resolution),
+         "no lane within 16 m before a shop front that a car's door could show", dark},
+        {"night", StreetShot{low, street.vehicles}, "", lightingAt(nightHour), ReflectionMethod::rerender,
+         true}};
     for (const Still& still : stills) {
         if (interrupted()) break;
-        if (!still.view) {
-            spdlog::warn("{}: no car of this street stands so that it could be shown; try another --seed",
-                         still.name);
+        if (!still.shot) {
+            spdlog::warn("street_{}.png is left out: the city has {}.", still.name, still.missing);
             continue;
         }
         FrameScene frame = street;
-        frame.views = {*still.view};
+        frame.views = {still.shot->view};
+        frame.vehicles = still.shot->vehicles;
         frame.lighting = still.lighting;
         WindowsCase what{still.name, true, {}};
         what.settings.depth = 3;
         what.settings.maps = 16;
         if (still.wet) {
-            const glm::mat4& v = still.view->viewFromWorld;
+            const glm::mat4& v = still.shot->view.viewFromWorld;
             what.settings.wetRoad = roadHeightNear(
-                scene.city.roads, still.view->eye - 15.0 * glm::dvec3(v[0][2], v[1][2], v[2][2]));
+                scene.city.roads, still.shot->view.eye - 15.0 * glm::dvec3(v[0][2], v[1][2], v[2][2]));
         }
         ReflectionSettings settings;
         settings.method = still.method;
+        settings.quality = Quality::high;
         WindowsStage drawn(scene, stage.reflections, stage.renderer, options.resolution, {what}, settings);
         const Image8 image = drawn.picture(drawn.runs().front(), frame, framesOfAge);
         const std::string file = "street_" + still.name + ".png";

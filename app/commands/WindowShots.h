@@ -21,15 +21,4 @@ struct WindowShot {
 std::optional<WindowShot> carInWindow(const Scene& scene, const FrameScene& frame,
                                       const reflection::TriangleTracer& triangles, glm::ivec2 size);
 
-/// A car between two shops that look at each other, seen from the pavement before one of them, along the
-/// street: its glass shows the car and the other shop. Nothing where no car drives there. Cost: pairs of
-/// fronts times cars.
-std::optional<View> betweenShops(const Scene& scene, const FrameScene& frame,
-                                 const reflection::TriangleTracer& triangles, glm::ivec2 size);
-
-/// A car's door from so near that it shows the shop behind whoever looks. Nothing where no car stands before
-/// a shop. Cost: cars times fronts.
-std::optional<View> windowInDoor(const Scene& scene, const FrameScene& frame,
-                                 const reflection::TriangleTracer& triangles, glm::ivec2 size);
-
 }  // namespace app
