@@ -243,8 +243,9 @@ std::string describe(const DetailLadder& ladder) {
     Detail before = ladder.empty() ? Detail{} : ladder.rungs().front().detail;
     for (const Rung& rung : ladder.rungs()) {
         std::string step = givenUp(before, rung.detail);
-        table.push_back({step.empty() ? "nothing" : step, fixed(rung.ms(), 1), fixed(rung.reflectionMs, 2),
-                         fixed(rung.error, 4), fixed(rung.pictureError, 4), fixed(rung.jump, 4)});
+        if (step.empty()) step = table.size() == 1 ? "nothing" : "nothing more, and some is back";
+        table.push_back({step, fixed(rung.ms(), 1), fixed(rung.reflectionMs, 2), fixed(rung.error, 4),
+                         fixed(rung.pictureError, 4), fixed(rung.jump, 4)});
         before = rung.detail;
     }
     return formatTable(table);

@@ -166,8 +166,8 @@ void addBudget(CLI::App& parser, Options& o, unsigned groups) {
         ->excludes(budget);
     parser.add_flag(
         "--fixed-quality", o.fixedQuality,
-        "nothing adapts while it runs, for runs that can be repeated: --budget and --error choose "
-        "by the calibration alone");
+        "nothing adapts while it runs, for runs that can be repeated: --error chooses by the calibration "
+        "alone, --budget by the time that the first view takes, and says what it chose");
 }
 
 void addMirrors(CLI::App& parser, Options& o) {
