@@ -36,14 +36,6 @@ void bind(const MirrorTarget& target) {
 void MirrorMaps::look(const ReflectionTree& tree) {
     withDistance_ = options_.distances || (options_.nearness && !tree.environments.empty());
     for (const ReflectionNode& n : tree.nodes) withDistance_ = withDistance_ || rough(n);
-    if (tree.outlines.empty()) return;
-    if (!corners_) {
-        corners_ = Buffer::create();
-        outlines_ = VertexArray::create();
-        outlines_.buffer(0, corners_.name(), sizeof(glm::vec2)).attribute(0, 0, 2, GL_FLOAT, false, 0);
-        outlineProgram_ = Program::fromFiles({"mirror_outline.vert", "depth.frag"});
-    }
-    corners_.replace(std::span<const glm::vec2>(tree.outlines));
 }
 
 bool MirrorMaps::rough(const ReflectionNode& node) const {
@@ -62,30 +54,12 @@ void MirrorMaps::require(std::uint32_t level, const glm::ivec2& texels) {
     levels_[level].require(texels, glFormat(options_.format), withDistance_);
 }
 
-void MirrorMaps::clear(std::uint32_t level, bool nearest) {
+void MirrorMaps::clear(std::uint32_t level) {
     glBindFramebuffer(GL_FRAMEBUFFER, levels_[level].framebuffer.name());
     glDisable(GL_SCISSOR_TEST);
     glDepthMask(GL_TRUE);
-    glClearDepth(nearest ? 1 : 0);
+    glClearDepth(0);
     glClear(GL_DEPTH_BUFFER_BIT);
-}
-
-/// Within it everything is infinitely far: around it, nothing is.
-void MirrorMaps::outline(const ReflectionNode& node) {
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_ALWAYS);
-    glDepthMask(GL_TRUE);
-    glDisable(GL_CULL_FACE);
-    for (GLenum plane : {GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE1}) glDisable(plane);
-    const glm::dvec2 size = node.crop.size(), middle = 0.5 * (node.crop.low + node.crop.high);
-    outlineProgram_.set("scaleOffset", glm::vec4(2.0 / size, -2.0 * middle / size));
-    outlineProgram_.use();
-    outlines_.bind();
-    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(node.firstOutline),
-                 static_cast<GLsizei>(node.outlineCount));
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthFunc(GL_GEQUAL);
 }
 
 MirrorImage MirrorMaps::draw(const ReflectionTree& tree, const ReflectionNode& node, MirrorScene& scene,
@@ -100,13 +74,11 @@ MirrorImage MirrorMaps::draw(const ReflectionTree& tree, const ReflectionNode& n
     image.target.withDistance = level.withDistance();
     image.target.mirrored = node.view.mirrored();
     bind(image.target);
-    const bool outlined = node.outlineCount > 0;
     if (!cleared) {
         glDepthMask(GL_TRUE);
-        glClearDepth(outlined ? 1 : 0);
+        glClearDepth(0);
         glClear(GL_DEPTH_BUFFER_BIT);
     }
-    if (outlined) outline(node);
     scene.drawNode(tree, node, image.target);
     ++drawn.images;
     drawn.texels += static_cast<std::uint64_t>(node.scissor.area());

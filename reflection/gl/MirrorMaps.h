@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "reflection/gl/Buffer.h"
 #include "reflection/gl/MirrorBlur.h"
 #include "reflection/gl/MirrorLevel.h"
 #include "reflection/gl/MirrorPass.h"
@@ -34,8 +33,8 @@ class MirrorMaps {
     void look(const ReflectionTree& tree);
     /// Makes room for so many texels in a level's map.
     void require(std::uint32_t level, const glm::ivec2& texels);
-    /// Nothing drawn in all of a level's map; `nearest`: nothing can be drawn either, but for outlines.
-    void clear(std::uint32_t level, bool nearest);
+    /// Nothing drawn in all of a level's map.
+    void clear(std::uint32_t level);
 
     /// Draws a node's image with its lower left texel at `origin`. `cleared`: the whole map is, see `clear`.
     MirrorImage draw(const ReflectionTree& tree, const ReflectionNode& node, MirrorScene& scene,
@@ -55,14 +54,10 @@ class MirrorMaps {
   private:
     bool rough(const ReflectionNode& node) const;
     double widestBlur(const ReflectionNode& node) const;
-    void outline(const ReflectionNode& node);
 
     MirrorPassOptions options_;
     std::vector<MirrorLevel> levels_;
     MirrorBlur blur_;
-    Buffer corners_;
-    VertexArray outlines_;
-    Program outlineProgram_;
     bool withDistance_ = false;  ///< some mirror is rough, and way lengths add up through all
 };
 

@@ -60,15 +60,11 @@ struct MirrorPass::Impl {
             const AtlasGroup::Level& level = group.levels[k];
             const auto index = first + static_cast<std::uint32_t>(k);
             maps.require(index, level.size);
-            const bool outlined = std::ranges::all_of(level.places, [&](const AtlasGroup::Place& p) {
-                return tree.nodes[p.node].outlineCount > 0;
-            });
-            maps.clear(index, outlined);
+            maps.clear(index);
             for (const AtlasGroup::Place& p : level.places) {
                 origins[p.node] = p.origin;
                 const ReflectionNode& node = tree.nodes[p.node];
-                const bool cleared = outlined == (node.outlineCount > 0);
-                const MirrorImage image = maps.draw(tree, node, scene, p.origin, cleared);
+                const MirrorImage image = maps.draw(tree, node, scene, p.origin, true);
                 for (const std::uint32_t child : children.ofNode[p.node])
                     maps.apply(tree, tree.nodes[child], scene, origins[child], image);
                 scene.finishNode(tree, node, image.target);

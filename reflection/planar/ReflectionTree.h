@@ -30,9 +30,6 @@ struct Economies {
     bool offScreen = true;   ///< mirrors, curved reflectors and objects outside what a view sees
     bool narrow = true;      ///< a mirror view sees through its mirror's polygon, not through the whole image
     bool scissor = true;     ///< pixels outside the mirror's bounds in the image are not drawn
-    /// Nor those inside the bounds that its polygon does not cover: each map is masked first. Off: a mask
-    /// costs a pass over the bounds, which pays only where shading is dear.
-    bool outline = false;
     bool resolution =
         true;            ///< a map has as many texels as its mirror covers pixels, times `levelScale` ^ level
     bool detail = true;  ///< coarser levels of detail at depth
@@ -42,7 +39,7 @@ struct Economies {
     bool cap = true;        ///< at most `mostMaps`, the least visible left out
 
     static Economies paper() {
-        return {true, false, false, false, false, false, false, false, false, false, false};
+        return {true, false, false, false, false, false, false, false, false, false};
     }
 };
 
@@ -105,9 +102,7 @@ struct ReflectionNode {
     NdcRect crop;              ///< part of the whole image that the map's `resolution` texels show
     glm::ivec2 resolution{0};  ///< texels of the level's map in use, from its lower left corner
     PixelRect scissor;         ///< of them, those worth drawing
-    /// Of these, those that the mirrors' polygons cover, with a margin: ReflectionTree::outlinesOf. 0: all.
-    std::uint32_t firstOutline = 0, outlineCount = 0;
-    NdcRect bounds;       ///< of the mirrors in the parent's image; whole for curved
+    NdcRect bounds;            ///< of the mirrors in the parent's image; whole for curved
     double pixels = 0;    ///< that its mirrors cover in the caller's view, before occlusion: an upper bound
     float roughness = 0;  ///< its mirrors' largest
     glm::vec3 throughput{1};    ///< product of reflectances on the way to the eye, its own included
@@ -170,7 +165,6 @@ struct ReflectionTree {
     std::vector<ReflectionNode> nodes;  ///< depth first; a parent before its children
     std::vector<EnvironmentJob> environments;
     std::vector<std::uint32_t> mirrors, objects;
-    std::vector<glm::vec2> outlines;  ///< corners of triangles, ndc of a node's whole image (not of its crop)
     std::vector<glm::ivec2> levelSize;  ///< texels each level's map needs: as many maps as levels in use
     TreeCounters counters;
 
@@ -180,10 +174,6 @@ struct ReflectionTree {
     template <class Image>  // ReflectionNode or ReflectionRoot
     std::span<const std::uint32_t> objectsOf(const Image& image) const {
         return std::span(objects).subspan(image.firstObject, image.objectCount);
-    }
-    /// Triangles, three corners each, that hold everything a node's mirrors show.
-    std::span<const glm::vec2> outlinesOf(const ReflectionNode& n) const {
-        return std::span(outlines).subspan(n.firstOutline, n.outlineCount);
     }
     bool empty() const { return nodes.empty() && environments.empty(); }
 

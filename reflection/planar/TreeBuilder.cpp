@@ -6,7 +6,6 @@
 
 #include "reflection/planar/Gloss.h"
 #include "reflection/planar/MirrorView.h"
-#include "reflection/planar/Outline.h"
 
 namespace reflection {
 
@@ -216,11 +215,6 @@ bool TreeBuilder::see(const Image& image, std::uint32_t index, Seen& seen) {
         ++counters.belowCutOff;
         return false;
     }
-    if (economies.outline && image.view->projection == Projection::perspective &&
-        seen.portal.status == PortalStatus::ok) {
-        seen.outlines = {projected(*image.view, seen.portal.polygon)};
-        if (seen.outlines.front().empty()) seen.outlines.clear();
-    }
     seen.mirrored = mirrored.view;
     seen.mirrors = {index};
     seen.group = economies.share ? mirror.group : Mirror::alone;
@@ -244,10 +238,6 @@ void TreeBuilder::meetMirrors(const Image& image) {
         companion->portal.bounds.low = glm::min(companion->portal.bounds.low, seen.portal.bounds.low);
         companion->portal.bounds.high = glm::max(companion->portal.bounds.high, seen.portal.bounds.high);
         companion->portal.area += seen.portal.area;
-        if (seen.outlines.empty() || companion->outlines.empty())
-            companion->outlines.clear();
-        else
-            companion->outlines.push_back(std::move(seen.outlines.front()));
     }
     for (Seen& seen : all) addMirror(image, seen);
 }
@@ -322,22 +312,8 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         drawn.clipFromView = node.clipFromView;
         node.obliqueClipFromView = obliqueNear(drawn, plane).clipFromView;
     }
-    // The filter of a rough mirror reaches farther than any polygon.
-    if (roughness <= 0 && stray <= 0) outline(node, seen, image.grid, texelsArePixels ? 1 : 2 / scale);
     candidate.mirrors = std::move(seen.mirrors);
     push(std::move(candidate));
-}
-
-void TreeBuilder::outline(ReflectionNode& node, const Seen& seen, const glm::ivec2& grid, double margin) {
-    if (seen.outlines.empty()) return;
-    node.firstOutline = static_cast<std::uint32_t>(tree_.outlines.size());
-    const glm::dvec2 texels = 0.5 * glm::dvec2(grid);
-    for (const std::vector<glm::dvec2>& polygon : seen.outlines) {
-        const std::vector<glm::dvec2> wider = widened(polygon, texels, margin);
-        for (std::size_t i = 2; i < wider.size(); ++i)
-            for (const glm::dvec2& p : {wider[0], wider[i - 1], wider[i]}) tree_.outlines.emplace_back(p);
-    }
-    node.outlineCount = static_cast<std::uint32_t>(tree_.outlines.size()) - node.firstOutline;
 }
 
 void TreeBuilder::meetCurved(const Image& image) {

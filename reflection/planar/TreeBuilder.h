@@ -51,7 +51,6 @@ class TreeBuilder {
         Portal portal;
         EyeView mirrored;
         std::uint32_t group = Mirror::alone;
-        std::vector<std::vector<glm::dvec2>> outlines;  ///< of each mirror, ndc; none where unknown
     };
 
     void meet(const Image& image);
@@ -60,7 +59,6 @@ class TreeBuilder {
     bool see(const Image& image, std::uint32_t index, Seen& seen);
     bool occluded(const Image& image, const Portal& portal, const Mirror& mirror) const;
     void addMirror(const Image& image, Seen& seen);
-    void outline(ReflectionNode& node, const Seen& seen, const glm::ivec2& grid, double margin);
     void push(Candidate&& candidate);
     void take(Candidate&& candidate);
     void listObjects(const EyeView& view, const HalfSpaces& frustum, std::uint32_t& first,
