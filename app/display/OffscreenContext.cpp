@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/display/FreedMemory.h"
 #include "app/display/GlInfo.h"
 #include "app/display/RasteriserThreads.h"
 
@@ -113,6 +114,7 @@ struct OffscreenContext::Impl {
         renderer = glText(GL_RENDERER);
         version = glText(GL_VERSION);
         spreadRasteriserThreads();
+        keepFreedMemory(renderer);
         return {};
     }
 };

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/display/FreedMemory.h"
 #include "app/display/GlInfo.h"
 #include "app/display/RasteriserThreads.h"
 
@@ -114,6 +115,7 @@ Window::Window(const WindowOptions& options) {
     impl_->renderer = glText(GL_RENDERER);
     impl_->version = glText(GL_VERSION);
     spreadRasteriserThreads();
+    keepFreedMemory(impl_->renderer);
 }
 
 Window::~Window() = default;
