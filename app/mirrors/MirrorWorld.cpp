@@ -17,7 +17,7 @@ std::size_t MirrorWorld::triangles() const {
 }
 
 bool MirrorWorld::needsDistances() const {
-    return std::ranges::any_of(mirrors, [](const Flat& f) { return f.ripples.any() || f.fade > 0; });
+    return std::ranges::any_of(mirrors, [](const Flat& f) { return f.ripples.any(); });
 }
 
 reflection::TreeView MirrorWorld::view(const glm::ivec2& size) const {

@@ -3,8 +3,10 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <glm/mat3x3.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/mirrors/LitShapes.h"
@@ -40,16 +42,33 @@ struct Geometry {
     std::vector<Range> objects, mirrors, curved;
 };
 
-/// What draws one kind of surface, for straight and for bent projections.
-struct Kind {
-    explicit Kind(const std::vector<std::string>& defines) {
-        straight = gl::Program::fromFiles({"mirror_world.vert", "mirror_world.frag"}, defines);
-        std::vector<std::string> more = defines;
-        more.emplace_back("PARABOLOID");
-        bent = gl::Program::fromFiles({"mirror_world.vert", "mirror_world.frag"}, more);
+/// What draws one kind of surface, for straight and for bent projections, seen plainly or in mirrors that
+/// fade. Compiled when first asked for: a rasteriser in software pays for a branch's lookups on both its
+/// sides, so there are many and a scene needs few.
+class Kind {
+  public:
+    explicit Kind(std::vector<std::string> defines) : defines_(std::move(defines)) {}
+    const gl::Program& of(Projection p, bool faded) const {
+        const bool bent = p != Projection::perspective;
+        gl::Program& program = programs_[(bent ? 1u : 0u) + (faded ? 2u : 0u)];
+        if (!program) {
+            std::vector<std::string> all = defines_;
+            if (bent) all.emplace_back("PARABOLOID");
+            if (faded) all.emplace_back("FADED");
+            program = gl::Program::fromFiles({"mirror_world.vert", "mirror_world.frag"}, all);
+        }
+        return program;
     }
-    const gl::Program& of(Projection p) const { return p == Projection::perspective ? straight : bent; }
-    gl::Program straight, bent;
+
+  private:
+    std::vector<std::string> defines_;
+    mutable std::array<gl::Program, 4> programs_;
+};
+
+/// How mirrors on the way to an image fade what it shows: from its glass on, all of them.
+struct Fading {
+    double perMetre = 0;
+    HalfSpace from{0, 0, 0, 1};
 };
 
 glm::vec3 withoutMap(const glm::vec3& tint, const glm::vec3& reflectance, const glm::vec3& beyond) {
@@ -70,10 +89,6 @@ LitMesh meshOf(const MirrorWorld::Flat& flat, const glm::vec3& colour) {
 struct MirrorWorldRenderer::Impl {
     Impl(const MirrorWorld& w, CurvedMaps c, bool p)
         : world(w), curvedMaps(c), parallax(p), plain(geometryOf(0)) {
-        if (parallax) {
-            cube = Kind({"CUBE", "PARALLAX"});
-            pair = Kind({"PAIR", "PARALLAX"});
-        }
         if (c == CurvedMaps::dualParaboloid) {
             // An edge may bend by some hundredths of its length at a distance of as much.
             fine.emplace(geometryOf(0.25f));
@@ -134,8 +149,12 @@ struct MirrorWorldRenderer::Impl {
 
     /// The program of a kind, ready to draw into an image.
     const gl::Program& use(const Kind& kind, const EyeView& view, const glm::dmat4& clipFromView,
-                           const HalfSpace& glass) const {
-        const gl::Program& p = kind.of(view.projection);
+                           const HalfSpace& glass, const Fading& fading) const {
+        const gl::Program& p = kind.of(view.projection, fading.perMetre > 0);
+        if (fading.perMetre > 0) {
+            p.set("fading", static_cast<float>(fading.perMetre));
+            p.set("fadeFrom", glm::vec4(fading.from));
+        }
         p.set("eye", glm::vec3(view.eye));
         p.set("clipFromRelative", glm::mat4(clipFromView * glm::dmat4(view.viewFromWorld)));
         p.set("viewFromRelative", glm::mat3(view.viewFromWorld));
@@ -149,6 +168,21 @@ struct MirrorWorldRenderer::Impl {
     void draw(const Range& range) {
         glDrawElements(GL_TRIANGLES, range.count, GL_UNSIGNED_INT, range.offset());
         triangles += static_cast<std::uint64_t>(range.count / 3);
+    }
+
+    /// Each mirror on the way fades all that it shows, what other mirrors show in it included.
+    Fading fadingOf(const ReflectionTree& tree, const ReflectionNode* node) const {
+        Fading fading;
+        if (node == nullptr) return fading;
+        if (node->planar()) fading.from = node->glass;
+        for (;;) {
+            double own = 0;
+            for (const std::uint32_t m : tree.mirrorsOf(*node))
+                if (world.mirrors[m].fade > 0) own = std::max(own, 1 / world.mirrors[m].fade);
+            fading.perMetre += own;
+            if (node->parent == ReflectionNode::none) return fading;
+            node = &tree.nodes[node->parent];
+        }
     }
 
     /// Marks what is drawn from a map later: the reflectors of those nodes that are met in the image.
@@ -170,18 +204,25 @@ struct MirrorWorldRenderer::Impl {
     }
 
     void drawImage(const EyeView& view, const glm::dmat4& clipFromView, const HalfSpace& glass,
-                   std::span<const std::uint32_t> objects, const reflection::HalfSpaces& frustum,
-                   std::uint32_t hidden) {
+                   const Fading& fading, std::span<const std::uint32_t> objects,
+                   const reflection::HalfSpaces& frustum, std::uint32_t hidden) {
         setState();
         const Geometry& g = geometry(view);
         g.array.bind();
-        use(matte, view, clipFromView, glass);
+        use(matte, view, clipFromView, glass, fading);
         counts.clear();
         offsets.clear();
+        std::size_t end = 0;
         const auto list = [&](const Range& r) {
-            counts.push_back(r.count);
-            offsets.push_back(r.offset());
             triangles += static_cast<std::uint64_t>(r.count / 3);
+            // Neighbours in the buffer are one draw: each costs a software rasteriser microseconds.
+            if (!counts.empty() && r.first == end) {
+                counts.back() += r.count;
+            } else {
+                counts.push_back(r.count);
+                offsets.push_back(r.offset());
+            }
+            end = r.first + static_cast<std::size_t>(r.count);
         };
         for (std::uint32_t o : objects) list(g.objects[o]);
         for (std::size_t m = 0; m < g.mirrors.size(); ++m) {
@@ -204,30 +245,39 @@ struct MirrorWorldRenderer::Impl {
         glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                             static_cast<GLsizei>(counts.size()));
         if (!shown.empty()) {
-            const gl::Program& p =
-                use(curvedMaps == CurvedMaps::dualParaboloid ? pair : cube, view, clipFromView, glass);
             for (std::uint32_t c : shown) {
+                const reflection::MirrorSurface& surface = world.curved[c].reflector.surface;
+                const gl::Program& p =
+                    use(surface.roughness > 0 ? roughCurved : curved, view, clipFromView, glass, fading);
                 glBindTextureUnit(8, environment[c]);
-                p.set("reflectance", world.curved[c].reflector.surface.reflectance);
+                p.set("reflectance", surface.reflectance);
                 p.set("tint", world.curved[c].tint);
-                p.set("glossAngle", static_cast<float>(reflection::glossAngle(
-                                        static_cast<double>(world.curved[c].reflector.surface.roughness))));
+                p.set("glossAngle",
+                      static_cast<float>(reflection::glossAngle(static_cast<double>(surface.roughness))));
                 p.set("mapCentre", glm::vec3(world.curved[c].reflector.centre - view.eye));
                 draw(g.curved[c]);
             }
         }
     }
 
-    void drawSky(const EyeView& view, const glm::dmat4& clipFromView) const {
+    static std::vector<std::string> curvedDefines(CurvedMaps maps, bool parallax, bool rough) {
+        std::vector<std::string> defines{maps == CurvedMaps::dualParaboloid ? "PAIR" : "CUBE"};
+        if (parallax) defines.emplace_back("PARALLAX");
+        if (rough) defines.emplace_back("ROUGH");
+        return defines;
+    }
+
+    void drawSky(const EyeView& view, const glm::dmat4& clipFromView, bool faded) const {
         setState();
         const gl::Program& p = view.projection == Projection::perspective ? sky : skyBent;
         p.set("relativeFromView", glm::mat3(glm::transpose(view.viewFromWorld)));
         p.set("projection",
               glm::vec4(clipFromView[0][0], clipFromView[1][1], clipFromView[2][0], clipFromView[2][1]));
         p.set("keepNearness", parallax && face ? 1 : 0);
-        p.set("zenith", world.zenith);
-        p.set("horizon", world.horizon);
-        p.set("nadir", world.nadir);
+        // Infinitely far, nothing is left of it.
+        p.set("zenith", faded ? glm::vec3(0) : world.zenith);
+        p.set("horizon", faded ? glm::vec3(0) : world.horizon);
+        p.set("nadir", faded ? glm::vec3(0) : world.nadir);
         p.use();
         glDisable(GL_CULL_FACE);
         glDisable(GL_CLIP_DISTANCE0);
@@ -242,8 +292,10 @@ struct MirrorWorldRenderer::Impl {
     bool face = false;  ///< an environment map's is being drawn
     Geometry plain;
     std::optional<Geometry> fine;
-    Kind matte{{"MATTE"}}, flat{{"FLAT"}}, rough{{"FLAT", "ROUGH"}}, bumped{{"FLAT", "BUMPED"}},
-        sphere{{"VIEW"}}, cube{{"CUBE"}}, pair{{"PAIR"}};
+    Kind matte{{"MATTE"}}, flat{{"FLAT"}}, flatWithDistance{{"FLAT", "DISTANCE"}},
+        rough{{"FLAT", "DISTANCE", "ROUGH"}}, bumped{{"FLAT", "DISTANCE", "BUMPED"}}, sphere{{"VIEW"}},
+        curved{curvedDefines(curvedMaps, parallax, false)},
+        roughCurved{curvedDefines(curvedMaps, parallax, true)};
     gl::Program sky = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"});
     gl::Program skyBent = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"}, {"PARABOLOID"});
     gl::VertexArray nothing = gl::VertexArray::create();
@@ -268,7 +320,7 @@ void MirrorWorldRenderer::drawRoot(const ReflectionTree& tree, std::uint32_t roo
     glFrontFace(r.view.mirrored() ? GL_CW : GL_CCW);
     impl_->markRoot(tree, r);
     impl_->face = false;
-    impl_->drawImage(r.view, r.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(r), r.frustum, r.curved);
+    impl_->drawImage(r.view, r.view.clipFromView, {0, 0, 0, 1}, {}, tree.objectsOf(r), r.frustum, r.curved);
 }
 
 void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionNode& node,
@@ -277,30 +329,32 @@ void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionN
     impl_->markApplied(tree, [&](const ReflectionNode& n) { return n.parent == index; });
     impl_->face = false;
     impl_->drawImage(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView, node.glass,
-                     tree.objectsOf(node), node.frustum, node.hiddenCurved);
+                     impl_->fadingOf(tree, &node), tree.objectsOf(node), node.frustum, node.hiddenCurved);
 }
 
 void MirrorWorldRenderer::drawFace(const ReflectionTree& tree, const ReflectionRoot& face,
                                    const MirrorTarget&) {
     impl_->markRoot(tree, face);
     impl_->face = true;
-    impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, tree.objectsOf(face), face.frustum,
+    impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, {}, tree.objectsOf(face), face.frustum,
                      face.curved);
 }
 
 void MirrorWorldRenderer::finishRoot(const ReflectionTree& tree, std::uint32_t root) {
     impl_->face = false;
-    impl_->drawSky(tree.roots[root].view, tree.roots[root].view.clipFromView);
+    impl_->drawSky(tree.roots[root].view, tree.roots[root].view.clipFromView, false);
 }
 
-void MirrorWorldRenderer::finishNode(const ReflectionTree&, const ReflectionNode& node, const MirrorTarget&) {
+void MirrorWorldRenderer::finishNode(const ReflectionTree& tree, const ReflectionNode& node,
+                                     const MirrorTarget&) {
     impl_->face = false;
-    impl_->drawSky(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView);
+    impl_->drawSky(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView,
+                   impl_->fadingOf(tree, &node).perMetre > 0);
 }
 
 void MirrorWorldRenderer::finishFace(const ReflectionTree&, const ReflectionRoot& face, const MirrorTarget&) {
     impl_->face = true;
-    impl_->drawSky(face.view, face.view.clipFromView);
+    impl_->drawSky(face.view, face.view.clipFromView, false);
 }
 
 void MirrorWorldRenderer::publish(const reflection::EnvironmentJob& job, std::uint32_t texture) {
@@ -319,11 +373,12 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
                              : my.oblique      ? parent->obliqueClipFromView
                                                : parent->clipFromView;
     const HalfSpace glass = parent != nullptr ? parent->glass : HalfSpace(0, 0, 0, 1);
+    const Fading fading = my.fadingOf(tree, parent);
     const Geometry& g = my.geometry(view);
     g.array.bind();
     glBindTextureUnit(8, map.colour);
     if (!node.planar()) {
-        const gl::Program& p = my.use(my.sphere, view, clip, glass);
+        const gl::Program& p = my.use(my.sphere, view, clip, glass, fading);
         p.set("mapFromRelative", glm::mat3(node.view.viewFromWorld));
         p.set("mapScale", static_cast<float>(node.clipFromView[0][0]));
         const glm::vec2 low = glm::vec2(map.uvLimits) - 0.5f / map.texels;
@@ -336,10 +391,11 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
     }
     const auto isBumped = [&](std::uint32_t m) { return my.world.mirrors[m].ripples.any(); };
     const bool bumped = map.distance != 0 && std::ranges::any_of(tree.mirrorsOf(node), isBumped);
-    const gl::Program& p = my.use(map.blurred != 0 ? my.rough
-                                  : bumped         ? my.bumped
-                                                   : my.flat,
-                                  view, clip, glass);
+    const gl::Program& p = my.use(map.blurred != 0    ? my.rough
+                                  : bumped            ? my.bumped
+                                  : map.distance != 0 ? my.flatWithDistance
+                                                      : my.flat,
+                                  view, clip, glass, fading);
     p.set("uvFromFragment", map.uvFromFragment);
     p.set("uvLimits", map.uvLimits);
     p.set("blurredScale", map.blurredScale);
@@ -356,7 +412,6 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
         p.set("tint", my.world.mirrors[m].tint);
         p.set("mirrorNormal", glm::vec3(plane.normal()));
         const MirrorWorld::Flat& flat = my.world.mirrors[m];
-        p.set("fading", flat.fade > 0 && map.distance != 0 ? static_cast<float>(1 / flat.fade) : 0.f);
         if (bumped) {
             const RippleFrame frame(plane.normal());
             p.set("rippleU", glm::vec3(frame.u));
@@ -373,7 +428,7 @@ void MirrorWorldRenderer::drawMirrorShape(std::uint32_t mirror, const EyeView& v
                                           const glm::vec3& colour) {
     const Geometry& g = impl_->geometry(view);
     g.array.bind();
-    impl_->use(impl_->matte, view, clipFromView, glass);
+    impl_->use(impl_->matte, view, clipFromView, glass, {});
     // A constant in place of the corners' colours.
     glDisableVertexArrayAttrib(g.array.name(), 2);
     glVertexAttrib3f(2, colour.r, colour.g, colour.b);

@@ -1,6 +1,7 @@
 #version 450 core
-// MATTE: what the corners say. FLAT: a planar mirror with its map, ROUGH: blurred, BUMPED: with waves. Otherwise a curved reflector: VIEW: view-dependent map,
-// CUBE or PAIR: view-independent, PARALLAX: with distances in alpha.
+// MATTE: what the corners say. FLAT: a planar mirror with its map, DISTANCE: with distances, ROUGH: blurred, BUMPED: with waves. Otherwise a curved
+// reflector: VIEW: view-dependent map, CUBE or PAIR: view-independent, PARALLAX: with distances in alpha, ROUGH: blurred. FADED: in an image that mirrors
+// on the way to the eye fade by distance.
 #if defined(FLAT)
 #include "mirror_map.glsl"
 #endif
@@ -17,9 +18,10 @@ uniform mat3 viewFromRelative;  // of the image in which the mirror is met
 uniform vec2 uvPerTangent;      // texture coordinates for one unit of x / -z in view space
 uniform float glossAngle;       // radians
 uniform int blurLevels;
+#ifdef DISTANCE
 layout(binding = 10) uniform sampler2D mirrorDistance;
 uniform bool addDistance;
-uniform float fading;  // 1 / metre
+#endif
 #elif defined(VIEW)
 layout(binding = 8) uniform sampler2D map;
 uniform mat3 mapFromRelative;  // view space of the map
@@ -47,7 +49,7 @@ vec3 mapAtLevel(vec3 direction, float level) {
 }
 #endif
 
-#if defined(CUBE) || defined(PAIR)
+#if (defined(CUBE) || defined(PAIR)) && defined(ROUGH)
 uniform float glossAngle;  // radians; see reflection/planar/Gloss.h
 // Light under a Gaussian about a direction, `along` and `across`: directions by one deviation each. Half of the variance is the mip
 // level's (a quarter of a texel's square), half that of nine lookups with the weights of Gauss and Hermite: no texel shows.
@@ -128,6 +130,17 @@ vec3 mirrorBumped(vec3 d) {
 }
 #endif
 
+#ifdef FADED
+uniform float fading;   // 1 / metre
+uniform vec4 fadeFrom;  // the mirror that the eye looks through: w < 0; else it fades from the eye on
+// What the way behind the glass leaves; beyond a mirror on it, that mirror's own image has seen to it.
+float leftOfLight() {
+    float way = length(relative);
+    float before = max(-fadeFrom.w, 0.0) / max(dot(fadeFrom.xyz, relative) / way, 1e-6);
+    return exp(-fading * max(way - before, 0.0));
+}
+#endif
+
 #ifdef FLAT
 // Movement over the image when a direction of view space turns towards `e`, for one radian.
 vec2 movement(vec3 v, vec3 e) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) * uvPerTangent; }
@@ -157,12 +170,11 @@ void main() {
 #else
     light = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
 #endif
-    if (fading > 0.0) light *= exp(-fading * max(textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r - length(relative), 0.0));
-    if (addDistance || keepNearness) {
-        float way = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
-        if (addDistance) distanceOut = way;
-        if (keepNearness) alpha = 1.0 / max(way * greatest(d), 1e-6);
-    }
+#ifdef DISTANCE
+    float way = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
+    if (addDistance) distanceOut = way;
+    if (keepNearness) alpha = 1.0 / max(way * greatest(d), 1e-6);
+#endif
 #else
     vec3 r = reflect(d, normalize(normal));
 #if defined(VIEW)
@@ -176,7 +188,8 @@ void main() {
 #ifdef PARALLAX
     seen = seenFromCentre(relative - mapCentre, r);
 #endif
-    if (glossAngle > 0.0) {
+#ifdef ROUGH
+    {
         // `seen` is r and a share of the way from the centre: per radian about r what is met moves by its distance.
         float facing = clamp(-dot(d, normalize(normal)), 1e-3, 1.0), whole = length(seen);
         vec3 within = normalize(normal) + facing * d;
@@ -185,11 +198,15 @@ void main() {
         e1 = reflect(e1, normalize(normal));
         vec3 e2 = cross(r, e1), unit = seen / whole;
         light = mapBlurred(unit, glossAngle / whole * (e1 - dot(e1, unit) * unit), glossAngle * facing / whole * (e2 - dot(e2, unit) * unit));
-    } else {
-        light = mapTowards(seen).rgb;
     }
+#else
+    light = mapTowards(seen).rgb;
+#endif
 #endif
 #endif
     colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, alpha);
+#endif
+#ifdef FADED
+    colourOut.rgb *= leftOfLight();
 #endif
 }

@@ -169,6 +169,30 @@ TEST_F(MirrorStageGlTest, BumpedAndFadingMirrorsComeNearTheTruth) {
     }
 }
 
+// What a mirror seen in one that fades shows by itself fades by the way to it, not by the way of what it
+// mirrors; what it mirrors fades by both ways, and by both mirrors' measure where both fade.
+TEST_F(MirrorStageGlTest, MirrorsSeenInFadingOnesFadeByTheWayToThem) {
+    MirrorWorld world = facingWindows(0);
+    for (MirrorWorld::Flat& f : world.mirrors) {
+        f.mirror.plane = reflection::MirrorPlane::make(f.mirror.plane.corners(), {glm::vec3(0.5f), 0}).mirror;
+        f.tint = {0.9f, 0.6f, 0.8f};
+    }
+    for (const auto& [first, second] : {std::pair{4.0, 0.0}, std::pair{0.0, 4.0}, std::pair{5.0, 9.0}}) {
+        world.mirrors[0].fade = first;
+        world.mirrors[1].fade = second;
+        const TracedPicture truth = MirrorTruth(world).picture(world.view(size), {.depth = 4, .samples = 1});
+        for (MirrorFormat format : {MirrorFormat::rgba16f, MirrorFormat::rgba8}) {
+            reflection::MirrorPassOptions options;
+            options.format = format;
+            MirrorStage stage(world, size, CurvedMaps::none, options);
+            TreeSettings settings;
+            settings.depth = 4;
+            stage.draw(settings);
+            EXPECT_GT(psnrOf(stage.read(), truth.radiance, size, truth.level), 42) << first << ' ' << second;
+        }
+    }
+}
+
 // Balls near a floor, walls and mirrors, seen in each other: where a ray ends matters.
 TEST_F(MirrorStageGlTest, CurvedReflectorsAreTruerWithDistances) {
     for (const auto& [which, gain] : {std::pair{'b', 1.5}, std::pair{'c', 4.0}}) {
