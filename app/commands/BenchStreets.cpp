@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "app/commands/Benches.h"
 #include "app/commands/CityTriangles.h"
+#include "app/commands/MirrorMask.h"
 #include "app/commands/PreparedScene.h"
 #include "app/commands/StreetShots.h"
 #include "app/commands/Version.h"
@@ -16,6 +18,7 @@
 #include "app/report/AsideFile.h"
 #include "app/report/Picture.h"
 #include "app/report/ResultFile.h"
+#include "app/report/Table.h"
 
 namespace app {
 
@@ -35,6 +38,14 @@ struct Still {
     bool wet = false;
 };
 
+void writeImage(const Image8& image, const std::filesystem::path& file) {
+    writePng({image.size.x, image.size.y, image.rgba}, file);
+}
+
+nlohmann::ordered_json known(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
 }  // namespace
 
 int benchStreets(const Options& options) {
@@ -45,7 +56,8 @@ int benchStreets(const Options& options) {
     PreparedScene stage(options, rendering);
     const Scene& scene = stage.scene;
     ResultFile results("streets", std::string(programVersion), stage.context.renderer());
-    std::vector<std::vector<std::string>> table{{"picture", "passes", "panes", "wet street"}};
+    std::vector<std::vector<std::string>> table{
+        {"picture", "passes", "panes", "wet street", "glass, dB", "FLIP", "wet ground, dB", "FLIP"}};
     if (!stage.reflections.complete) return reportBench(options, results, table);
     const CarsStage set = setCarsStage(scene, stage.renderer, carsOnStreet, options.seed, options.resolution);
     if (!set.traffic) throw std::runtime_error("the city has no street to look down.");
@@ -80,26 +92,35 @@ int benchStreets(const Options& options) {
         WindowsCase what{still.name, true, {}};
         what.settings.depth = 3;
         what.settings.maps = 16;
-        if (still.wet) {
-            const glm::mat4& v = still.shot->view.viewFromWorld;
-            what.settings.wetRoad = roadHeightNear(
-                scene.city.roads, still.shot->view.eye - 15.0 * glm::dvec3(v[0][2], v[1][2], v[2][2]));
-        }
+        if (still.wet) what.settings.wetRoad = roadSeenBy(scene.city.roads, still.shot->view);
         ReflectionSettings settings;
         settings.method = still.method;
         settings.quality = Quality::high;
         WindowsStage drawn(scene, stage.reflections, stage.renderer, options.resolution, {what}, settings);
         const Image8 image = drawn.picture(drawn.runs().front(), frame, framesOfAge);
         const std::string file = "street_" + still.name + ".png";
-        writePng({image.size.x, image.size.y, image.rgba}, options.out / file);
-        const MirrorCounters& planned = drawn.runs().front().planned;
+        writeImage(image, options.out / file);
+        const MirrorCounters planned = drawn.runs().front().planned;
+        const WindowsTruth truth = drawn.truthOf(frame, still.wet);
+        const std::string traced = "street_" + still.name + "_truth.png";
+        writeImage(toImage(truth.display, options.resolution), options.out / traced);
+        WindowsRun::Errors errors;
+        drawn.compare(
+            frame, [&](const WindowsRun&) { return &truth; }, [](const WindowsRun&) { return false; },
+            [&](WindowsRun&, WindowsPicture&& made) { errors = made.errors; });
         results.add({{"picture", file},
                      {"city", options.city},
                      {"passes", planned.passes},
                      {"windows", planned.windows},
-                     {"wet_street", planned.road}});
+                     {"wet_street", planned.road},
+                     {"truth", traced},
+                     {"psnr_db", known(errors.psnr)},
+                     {"mean_flip", known(errors.flip)},
+                     {"water_psnr_db", known(errors.waterPsnr)},
+                     {"water_mean_flip", known(errors.waterFlip)}});
         table.push_back({file, std::to_string(planned.passes), std::to_string(planned.windows),
-                         planned.road ? "yes" : "no"});
+                         planned.road ? "yes" : "no", fixed(errors.psnr, 1), fixed(errors.flip, 4),
+                         fixed(errors.waterPsnr, 1), fixed(errors.waterFlip, 4)});
     }
     return reportBench(options, results, table);
 }

@@ -63,6 +63,9 @@ WindowRow windowRowOf(const WindowsRun& run, std::uint32_t cars, glm::ivec2 size
     row.ratioToPainted = timingOf(run.ratio).median;
     row.psnr = errors.psnr;
     row.flip = errors.flip;
+    row.wet = run.what.settings.wetRoad.has_value();
+    row.waterPsnr = errors.waterPsnr;
+    row.waterFlip = errors.waterFlip;
     return row;
 }
 
@@ -87,7 +90,8 @@ WindowComparison compareWindows(const Scene& scene, const PreparedReflections& p
     strip.title = "windows of a street with " + std::to_string(set.visible) + " cars";
     strip.truth = cutOut({size.x, size.y, display.rgba}, corner, piece);
     stage.compare(
-        frame, truth, [&](const WindowsRun& run) { return options.pictures && pictured(run); },
+        frame, [&](const WindowsRun&) { return &truth; },
+        [&](const WindowsRun& run) { return options.pictures && pictured(run); },
         [&](WindowsRun& run, WindowsPicture&& picture) {
             if (run.ms.empty()) return;
             const WindowRow row =

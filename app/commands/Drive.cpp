@@ -57,12 +57,7 @@ MirrorSettings Drive::mirrorSettings(const View& view) const {
     settings.on = settings_.mirrors;
     settings.depth = settings_.mirrorDepth;
     settings.maps = settings_.mirrorMaps;
-    if (settings_.weather == Weather::wet) {
-        // The road in the middle of the picture rather than the one underfoot.
-        const glm::dvec3 ahead(
-            -glm::dvec3(view.viewFromWorld[0][2], view.viewFromWorld[1][2], view.viewFromWorld[2][2]));
-        settings.wetRoad = roadHeightNear(scene_->city.roads, view.eye + 15.0 * ahead);
-    }
+    if (settings_.weather == Weather::wet) settings.wetRoad = roadSeenBy(scene_->city.roads, view);
     return settings;
 }
 
@@ -154,6 +149,7 @@ ReflectionSettings Drive::reflectionSettings() const {
     settings.quality = settings_.quality;
     settings.mapsOn = mapsOn_;
     settings.gpuMapBytes = gpuMapBytes_;
+    settings.wet = settings_.weather == Weather::wet;
     return settings;
 }
 

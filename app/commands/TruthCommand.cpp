@@ -15,7 +15,9 @@
 #include "app/commands/Version.h"
 #include "app/display/OffscreenContext.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/MirrorPlan.h"
 #include "app/frame/ShotPlan.h"
+#include "app/frame/WetRoad.h"
 #include "app/raytrace/Edges.h"
 #include "app/raytrace/PartedPicture.h"
 #include "app/raytrace/RayTracer.h"
@@ -120,24 +122,31 @@ class TruthStill {
           options_(options),
           renderer_(renderer),
           tracer_(tracer),
-          target_(options.resolution) {}
+          planner_(scene.glass.fronts),
+          target_(options.resolution) {
+        if (windows() > 0) renderer_.setGlass(scene.glass.fronts);
+    }
 
     /// False: interrupted; finished rows are kept for the next time.
     bool take(const FrameScene& frame, const std::string& number, ResultFile& results,
               std::vector<std::vector<std::string>>& table) {
         const View& view = frame.views.front();
         renderer_.prepare(frame);
-        const std::vector<glm::vec3> drawn = draw(view, {});
+        const std::vector<glm::vec3> drawn = draw(view, {}, {nullptr, 0, wet()});
         tracer_.prepare(frame);
         tracer_.useSunMap(renderer_.sunMap());
         TraceOptions plain;
         plain.plain = true;
+        plain.wet = wet();
         const TracedPicture none = tracer_.render(view, plain);
         const std::vector<unsigned char> edges = edgesOf(none, view);
         const std::vector<glm::vec3> traced = none.display(scene_.lighting.exposure);
 
-        const TraceOptions full{static_cast<int>(options_.samples), static_cast<int>(options_.bounces), false,
-                                options_.seed};
+        TraceOptions full{static_cast<int>(options_.samples), static_cast<int>(options_.bounces), false,
+                          options_.seed};
+        full.windows = windows();
+        full.wet = wet();
+        full.film = static_cast<int>(options_.samples);
         const std::filesystem::path parts = options_.out / ("truth_" + number + ".parts");
         const Stopwatch watch;
         std::optional<TracedPicture> truth;
@@ -161,7 +170,9 @@ class TruthStill {
         screen_.upload(light.radiance, light.size, light.low, light.high);
         VehicleReflections reflections;
         reflections.mirrored = screen_.name();
-        const std::vector<glm::vec3> composed = draw(view, reflections);
+        const MirrorPlan plan = planOf(frame);
+        const std::vector<glm::vec3> composed =
+            draw(view, reflections, {windows() > 0 ? &plan : nullptr, 0, wet()});
 
         write(shown, "truth_" + number + ".png");
         write(composed, "composed_" + number + ".png");
@@ -181,10 +192,32 @@ class TruthStill {
         const std::vector<unsigned char> cars = apartFrom(edges, none, SeenKind::vehicle);
         const double all = agree(traced, drawn, {}), outside = agree(traced, drawn, apart),
                      plainCars = agree(traced, drawn, cars), mirrors = agree(shown, composed, cars);
+        const std::vector<glm::vec3> painted = windows() > 0 ? drawn : std::vector<glm::vec3>();
+        nlohmann::ordered_json flat;
+        std::vector<std::string> flatCells;
+        // What mirrors flatly, with its reflections and without.
+        for (const auto& [name, kind] : {std::pair("glass", SeenKind::glass), {"water", SeenKind::water}}) {
+            const std::vector<unsigned char> mask = apartFrom(edgesOf(*truth, view), *truth, kind);
+            const auto pixels = std::count(mask.begin(), mask.end(), 1);
+            if (pixels == 0 || painted.empty()) {
+                flatCells.emplace_back("-");
+                continue;
+            }
+            const double db = agree(shown, composed, mask);
+            const reflection::ImageView reference{options_.resolution.x, options_.resolution.y, shown};
+            const double flip = reflection::meanError(
+                reflection::flip({options_.resolution.x, options_.resolution.y, composed}, reference), mask);
+            flat[name] = {{"pixels", pixels},
+                          {"psnr_db", db},
+                          {"mean_flip", flip},
+                          {"without_reflections_psnr_db", agree(shown, painted, mask)}};
+            flatCells.push_back(fixed(db, 1));
+        }
         const double share = static_cast<double>(std::count(edges.begin(), edges.end(), 1)) /
                              static_cast<double>(edges.size());
         table.push_back({"truth_" + number + ".png", fixed(all, 1), fixed(outside, 1), fixed(plainCars, 1),
-                         fixed(100 * share, 1), fixed(mirrors, 1), fixed(seconds, 2)});
+                         fixed(100 * share, 1), fixed(mirrors, 1), flatCells[0], flatCells[1],
+                         fixed(seconds, 2)});
         results.add({{"method", "raytrace"},
                      {"city", options_.city},
                      {"picture", "truth_" + number + ".png"},
@@ -198,13 +231,31 @@ class TruthStill {
                      {"edge_share", share},
                      {"composed_psnr_vehicles_outside_edges_db", mirrors},
                      {"mirroring_pixels", light.pixels},
+                     {"weather", weatherNames[static_cast<std::size_t>(options_.weather)]},
+                     {"mirror_depth", windows()},
+                     {"composed_outside_edges", flat},
                      {"seconds", seconds}});
         return true;
     }
 
   private:
-    std::vector<glm::vec3> draw(const View& view, const VehicleReflections& reflections) {
-        renderer_.drawView(view, reflections, target_.framebuffer());
+    bool wet() const { return options_.weather == Weather::wet; }
+    /// Flat mirrors in a row.
+    int windows() const { return options_.mirrors ? options_.mirrorDepth : 0; }
+    MirrorPlan planOf(const FrameScene& frame) const {
+        if (windows() == 0) return {};
+        MirrorSettings settings;
+        settings.depth = windows();
+        settings.maps = options_.mirrorMaps;
+        if (wet()) settings.wetRoad = roadSeenBy(scene_.city.roads, frame.views.front());
+        return planner_.plan(frame.views, settings,
+                             [&](const auto& from, const auto* glass, const auto& box) {
+                                 return renderer_.hides(from, glass, box);
+                             });
+    }
+    std::vector<glm::vec3> draw(const View& view, const VehicleReflections& reflections,
+                                const PlanarReflections& planar) {
+        renderer_.drawView(view, reflections, target_.framebuffer(), planar);
         return toFloat(readPixels(target_.framebuffer(), target_.size()));
     }
     void write(const std::vector<glm::vec3>& pixels, const std::string& name) const {
@@ -215,6 +266,7 @@ class TruthStill {
     const Options& options_;
     SceneRenderer& renderer_;
     RayTracer& tracer_;
+    MirrorPlanner planner_;
     OffscreenTarget target_;
     reflection::ScreenLight screen_;
 };
@@ -232,8 +284,8 @@ int run(const Options& options) {
     Shots shots(scene, options);
 
     ResultFile results("truth", std::string(programVersion), context.renderer());
-    std::vector<std::vector<std::string>> table{
-        {"picture", "none dB", "outside edges", "its cars", "edges %", "composed: cars", "traced in s"}};
+    std::vector<std::vector<std::string>> table{{"picture", "none dB", "outside edges", "its cars", "edges %",
+                                                 "composed: cars", "its glass", "its water", "traced in s"}};
     // As the tour: ten seconds where nothing else is asked for, stills in the middles of equal parts.
     const std::uint32_t frames = options.frameCount().value_or(10 * options.fps);
     const std::uint32_t stills = std::clamp(options.stills, 1u, frames);
@@ -261,7 +313,7 @@ Command truthCommand() {
             "ray traced pictures of a drive, and how far ray tracer and rasteriser agree; goes on where it "
             "was interrupted",
         .groups = cityOptions | trafficOptions | pictureOptions | outOptions | jsonOptions | durationOptions |
-                  shotOptions | rayOptions,
+                  shotOptions | rayOptions | mirrorOptions,
         .benches = {},
         .run = run};
 }

@@ -118,7 +118,7 @@ void WindowsStage::measureAway(const CarsStage& set, const std::string& name, st
     with->drawn = drawn;
 }
 
-WindowsTruth WindowsStage::truthOf(const FrameScene& frame) {
+WindowsTruth WindowsStage::truthOf(const FrameScene& frame, bool wet) {
     const View& view = frame.views.front();
     renderer_.prepare(frame);
     RayTracer tracer(scene_.city, scene_.models);
@@ -130,21 +130,27 @@ WindowsTruth WindowsStage::truthOf(const FrameScene& frame) {
     trace.samples = 4;
     trace.bounces = 2;
     trace.windows = truthDepth;
+    trace.wet = wet;
+    trace.film = 256;
     const TracedPicture traced = tracer.render(view, trace);
-    WindowsTruth truth{traced.display(frame.lighting.exposure), edgesOf(traced, view)};
-    for (std::size_t i = 0; i < truth.glass.size(); ++i)
-        truth.glass[i] = truth.glass[i] == 0 && traced.kind[i] == SeenKind::glass ? 1 : 0;
+    WindowsTruth truth{traced.display(frame.lighting.exposure), edgesOf(traced, view), {}};
+    truth.water = truth.glass;
+    for (std::size_t i = 0; i < truth.glass.size(); ++i) {
+        const bool edge = truth.glass[i] != 0;
+        truth.glass[i] = !edge && traced.kind[i] == SeenKind::glass ? 1 : 0;
+        truth.water[i] = !edge && traced.kind[i] == SeenKind::water ? 1 : 0;
+    }
     return truth;
 }
 
-void WindowsStage::compare(const FrameScene& frame, const WindowsTruth& truth,
+void WindowsStage::compare(const FrameScene& frame,
+                           const std::function<const WindowsTruth*(const WindowsRun&)>& truthFor,
                            const std::function<bool(const WindowsRun&)>& wanted,
                            const std::function<void(WindowsRun&, WindowsPicture&&)>& done) {
     renderer_.prepare(frame);
     DrawingDetail plain;
     plain.antialiasing = 0;
     const glm::ivec2 size = resolution();
-    const reflection::ImageView reference{size.x, size.y, truth.display};
     // The cars wear the same maps in all pictures, those of all that any case shows: windows are compared.
     std::vector<MirrorPlan> plans;
     std::vector<SeenVehicle> seen;
@@ -176,8 +182,17 @@ void WindowsStage::compare(const FrameScene& frame, const WindowsTruth& truth,
         renderer_.setDetail({});
         const reflection::ImageView image{size.x, size.y, pixels};
         WindowsPicture made;
-        made.errors.psnr = reflection::psnr(image, reference, truth.glass);
-        made.errors.flip = reflection::meanError(reflection::flip(image, reference), truth.glass);
+        if (const WindowsTruth* truth = truthFor(run)) {
+            const reflection::ImageView reference{size.x, size.y, truth->display};
+            const auto errors = reflection::flip(image, reference);
+            const auto on = [&](const std::vector<unsigned char>& mask, double& psnr, double& flip) {
+                if (std::ranges::count(mask, 1) == 0) return;
+                psnr = reflection::psnr(image, reference, mask);
+                flip = reflection::meanError(errors, mask);
+            };
+            on(truth->glass, made.errors.psnr, made.errors.flip);
+            on(truth->water, made.errors.waterPsnr, made.errors.waterFlip);
+        }
         if (!before.empty()) made.errors.psnrToBefore = reflection::psnr(image, {size.x, size.y, before}, {});
         before = pixels;
         if (wanted(run)) made.seen = picture();

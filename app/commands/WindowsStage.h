@@ -8,6 +8,7 @@
 
 #include "app/commands/CarsStage.h"
 #include "app/commands/PreparedReflections.h"
+#include "app/compare/CompareRow.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/MirrorPlan.h"
 #include "app/frame/ReflectionEngine.h"
@@ -38,9 +39,10 @@ struct WindowsRun {
     std::uint32_t awayPasses = 0;
     std::uint64_t awayBytes = 0;
 
-    /// Errors on the pixels that show glass, but for outlines.
+    /// Errors on the pixels that show glass, and on those of wet ground, but for outlines.
     struct Errors {
-        double psnr = 0, flip = 0;
+        double psnr = PictureErrors::unknown, flip = PictureErrors::unknown;
+        double waterPsnr = PictureErrors::unknown, waterFlip = PictureErrors::unknown;
         double psnrToBefore = 0;  ///< of all pixels, to the case before
     };
 };
@@ -54,7 +56,7 @@ struct WindowsPicture {
 /// The view's truth, and which pixels count.
 struct WindowsTruth {
     std::vector<glm::vec3> display;
-    std::vector<unsigned char> glass;
+    std::vector<unsigned char> glass, water;
 };
 
 /// Measures cases interleaved on the same frames of the same traffic, and compares them with ray traced
@@ -73,9 +75,11 @@ class WindowsStage {
     /// The same looking up at the sky, for the case of that name beside the first.
     void measureAway(const CarsStage& set, const std::string& name, std::uint32_t frames);
 
-    WindowsTruth truthOf(const FrameScene& frame);
-    /// `wanted`: of which cases a picture is to be kept; `done` gets each case in turn.
-    void compare(const FrameScene& frame, const WindowsTruth& truth,
+    WindowsTruth truthOf(const FrameScene& frame, bool wet = false);
+    /// `truthFor`: the dry or the wet one; null: no errors. `wanted`: of which cases a picture is to be kept;
+    /// `done` gets each case in turn.
+    void compare(const FrameScene& frame,
+                 const std::function<const WindowsTruth*(const WindowsRun&)>& truthFor,
                  const std::function<bool(const WindowsRun&)>& wanted,
                  const std::function<void(WindowsRun&, WindowsPicture&&)>& done);
 

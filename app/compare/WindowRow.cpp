@@ -29,7 +29,10 @@ nlohmann::ordered_json toJson(const WindowRow& row, const std::string& city) {
             {"frame_ms", toJson(row.frame)},
             {"ratio_to_painted", known(row.ratioToPainted)},
             {"psnr_db", known(row.psnr)},
-            {"mean_flip", known(row.flip)}};
+            {"mean_flip", known(row.flip)},
+            {"wet", row.wet},
+            {"water_psnr_db", known(row.waterPsnr)},
+            {"water_mean_flip", known(row.waterFlip)}};
 }
 
 }  // namespace app

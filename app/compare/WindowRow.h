@@ -24,6 +24,8 @@ struct WindowRow {
     Timing frame;
     double ratioToPainted = PictureErrors::unknown;
     double psnr = PictureErrors::unknown, flip = PictureErrors::unknown;  ///< on glass, against the truth
+    bool wet = false;                                                     ///< the streets, in the truth too
+    double waterPsnr = PictureErrors::unknown, waterFlip = PictureErrors::unknown;  ///< on wet ground
 };
 
 /// The windows of a comparison; no rows where the city has none.

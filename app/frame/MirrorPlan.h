@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/frame/View.h"
+#include "app/frame/WetGround.h"
 #include "city/model/GlassFronts.h"
 #include "reflection/planar/ReflectionTree.h"
 
@@ -48,8 +49,6 @@ struct MirrorCounters {
     double milliseconds = 0;  ///< of planning
 };
 
-/// Roughness of the film of water on asphalt: its microfacets spread what it mirrors by 5 degrees.
-inline constexpr float wetRoughness = 0.25f;
 /// Texels of what wet ground mirrors for each pixel: films blur it over tens of pixels, ripples shake it in
 /// puddles.
 inline constexpr double wetTexels = 0.5;

@@ -432,7 +432,9 @@ std::uint32_t ReflectionEngine::mirroredIn(const View& view) {
         engine.mirrors.empty())
         return 0;
     const auto start = std::chrono::steady_clock::now();
-    engine.rayTracer->mirrored(view, engine.mirrors, {}, engine.mirrored);
+    TraceOptions options;
+    options.wet = engine.settings.wet;
+    engine.rayTracer->mirrored(view, engine.mirrors, options, engine.mirrored);
     engine.screen.upload(engine.mirrored.radiance, engine.mirrored.size, engine.mirrored.low,
                          engine.mirrored.high);
     engine.counters.rays += engine.mirrored.rays;

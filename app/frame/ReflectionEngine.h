@@ -32,6 +32,7 @@ struct ReflectionSettings {
     bool everyFrame = false;       ///< rebuild every visible map every frame
     bool vehiclesInMaps = true;    ///< other vehicles appear in each vehicle's map
     bool parallax = true;          ///< maps of `mem` are looked up where a pixel's own ray ends
+    bool wet = false;              ///< it has rained: what `raytrace` sees; maps are of dry streets
     bool shareMaps = true;         ///< small vehicles may show a neighbour's map
     std::uint32_t mapsInTurn = 0;  ///< see PlanOptions
     int sizeClass = -1;            ///< see PlanOptions

@@ -28,4 +28,10 @@ std::optional<double> roadHeightNear(const city::RoadNetwork& roads, const glm::
     return height;
 }
 
+std::optional<double> roadSeenBy(const city::RoadNetwork& roads, const View& view) {
+    constexpr double ahead = 15;  // metres
+    const glm::mat4& v = view.viewFromWorld;
+    return roadHeightNear(roads, view.eye - ahead * glm::dvec3(v[0][2], v[1][2], v[2][2]));
+}
+
 }  // namespace app

@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
+#include "app/frame/View.h"
 #include "city/roads/RoadNetwork.h"
 
 namespace app {
@@ -13,5 +14,8 @@ namespace app {
 /// over the ground to what is mirrored; beyond 0.28 m the image fades, at 0.4 m there is none. Nothing
 /// without lanes. Cost: points of all lanes.
 std::optional<double> roadHeightNear(const city::RoadNetwork& roads, const glm::dvec3& at);
+
+/// The same for a view: of the road in the middle of the picture rather than the one underfoot.
+std::optional<double> roadSeenBy(const city::RoadNetwork& roads, const View& view);
 
 }  // namespace app

@@ -130,9 +130,13 @@ RayMeshes::RayMeshes(const city::CityModel& city, std::span<const vehicles::Vehi
     : city_(city) {
     auto chunks = std::make_unique<Parts>();
     std::size_t triangles = 0;
-    for (const city::Chunk& chunk : city.chunks) {
-        append(*chunks, chunk.mesh, nullptr);
-        triangles += chunk.mesh.triangleCount();
+    for (const bool ground : {true, false}) {
+        for (const city::Chunk& chunk : city.chunks) {
+            if ((chunk.kind == city::ChunkKind::ground) != ground) continue;
+            append(*chunks, chunk.mesh, nullptr);
+            triangles += chunk.mesh.triangleCount();
+        }
+        if (ground) groundTriangles_ = static_cast<std::uint32_t>(chunks->meshes[solid].triangleCount());
     }
     for (const city::Placement& placement : city.placements)
         if (placement.prototype < city.prototypes.size() &&

@@ -40,6 +40,10 @@ class RayMeshes {
     /// The city with all placements as fine as they get, as one mesh; none where that were too large: then
     /// chunks and placements are to be placed one by one.
     std::uint32_t whole() const { return whole_; }
+    /// Whether a triangle of `chunks` or `whole` is of the ground, which rain wets.
+    bool isGround(std::uint32_t mesh, std::uint32_t part, std::uint32_t triangle) const {
+        return part == 0 && triangle < groundTriangles_ && (mesh == chunks_ || mesh == whole_);
+    }
     std::uint32_t lamp() const { return lamp_; }  ///< a disc of radius 1 that faces +x
     const std::vector<Prototype>& prototypes() const { return prototypes_; }
     const std::vector<Vehicle>& vehicles() const { return vehicles_; }
@@ -59,6 +63,7 @@ class RayMeshes {
     reflection::TracedMeshes traced_;
     std::vector<std::unique_ptr<Parts>> parts_;
     std::uint32_t chunks_ = none, whole_ = none, lamp_ = none;
+    std::uint32_t groundTriangles_ = 0;  ///< solid ones: the first of `chunks` and `whole`
     std::vector<Prototype> prototypes_;
     std::vector<Vehicle> vehicles_;
 };

@@ -1,9 +1,13 @@
 #include "app/raytrace/RayPaths.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "app/frame/Sky.h"
+#include "app/raytrace/Strata.h"
 
 namespace app {
 
@@ -64,8 +68,21 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
             return;
         }
         glm::vec3 light = shading.city(placed, triangle, weights, level);
-        if (scene.shadows != nullptr) light *= scene.shadows->share(ray.origin, ray.direction, hit.t);
-        sums[ray.sum] += ray.weight * light;
+        const glm::vec3 share =
+            scene.shadows != nullptr ? scene.shadows->share(ray.origin, ray.direction, hit.t) : glm::vec3(1);
+        if (const auto ground =
+                scene.wet ? shading.wetGround(placed, hit, triangle, ray.direction) : std::nullopt) {
+            light *= ground->under * (1 - ground->mirrored);
+            if (ground->mirrored > 0 && mirrorAgain) {
+                PathRay met = ray;
+                met.weight *= share;
+                addWetRays(scene, *ground, triangle.at(weights), met, footprint, hit.t, false, next_);
+            } else {
+                light +=
+                    shading.wetSurroundings(triangle, weights, ray.direction, *ground) * ground->mirrored;
+            }
+        }
+        sums[ray.sum] += ray.weight * share * light;
         return;
     }
     const VehiclePoint point =
@@ -85,6 +102,45 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
                      ray.weight * fresnel,
                      ray.sum,
                      {}});
+}
+
+void RayPaths::addWetRays(const Scene& scene, const WetGround& ground, const glm::vec3& at,
+                          const PathRay& ray, float footprint, float distance, bool seenDirectly,
+                          std::vector<PathRay>& to) {
+    const glm::vec3 up(0, 0, 1);
+    const auto add = [&](const glm::vec2& slope, const glm::vec3& weight, float spread) -> PathRay& {
+        const glm::vec3 normal = glm::normalize(glm::vec3(slope, 1));
+        glm::vec3 direction = mirrorDirection(normal, -ray.direction);
+        direction.z = std::abs(direction.z);  // what is thrown downwards comes up from the next grain
+        return to.emplace_back(PathRay{
+            mirrorStart(at, up, direction), direction, footprint, spread, ray.weight * weight, ray.sum, {}});
+    };
+    if (ground.puddle > 0) {
+        PathRay& smooth =
+            add(rippleAt(glm::vec2(at), distance), glm::vec3(ground.mirrored * ground.puddle), ray.spread);
+        smooth.pixel = ray.pixel;
+        smooth.pixel.reflect(at, up);
+    }
+    const float film = ground.mirrored * (1 - ground.puddle) * wet::filmShare;
+    if (!(film > 0)) return;
+    // In mirrors in a row the fewer the less it matters: all of them from a sixth of the light on.
+    const float matters = film * std::max({ray.weight.x, ray.weight.y, ray.weight.z});
+    const int most = std::max(scene.film, 1);
+    const int count =
+        seenDirectly
+            ? most
+            : std::clamp(static_cast<int>(std::ceil(6 * matters * static_cast<float>(most))), 1, most);
+    const std::uint64_t key =
+        strataKey(scene.seed, std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y));
+    const float share = 1 / static_cast<float>(count);
+    for (int s = 0; s < count; ++s) {
+        // Slopes of a normal distribution, half as wide as the directions' (Box and Muller).
+        const glm::vec2 r = stratum(key, 0, s, count);
+        const float away = 0.5f * filmAngle() * std::sqrt(-2 * std::log(std::max(1 - r.x, 1e-6f)));
+        const float turn = 2 * std::numbers::pi_v<float> * r.y;
+        add(away * glm::vec2(std::cos(turn), std::sin(turn)), glm::vec3(film * share),
+            std::max(ray.spread, filmAngle() * std::sqrt(share)));
+    }
 }
 
 std::uint64_t RayPaths::follow(const Scene& scene, int mirrors, std::span<glm::vec3> sums,

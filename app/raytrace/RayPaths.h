@@ -52,6 +52,9 @@ class RayPaths {
         bool glass = false;  ///< the city's panes are mirrors too; otherwise they are as they are painted
         const GroundShadows* shadows = nullptr;          ///< those of vehicles; null: none
         TextureFilter filter = TextureFilter::standard;  ///< for rays that know their pixel
+        bool wet = false;                                ///< it has rained: ground mirrors
+        int film = 1;  ///< rays for what a film of water spreads, where all its light comes from there
+        std::uint64_t seed = 1;
     };
 
     std::vector<PathRay> rays;  ///< to be filled; empty afterwards
@@ -61,6 +64,12 @@ class RayPaths {
     /// Returns the number of rays traced.
     std::uint64_t follow(const Scene& scene, int mirrors, std::span<glm::vec3> sums,
                          std::span<float> distances = {});
+
+    /// Adds rays to follow for the light that a point of wet ground mirrors, and shares of it as weights.
+    /// `at` on the ground; `ray`: the one that met it, `footprint` wide there.
+    static void addWetRays(const Scene& scene, const WetGround& ground, const glm::vec3& at,
+                           const PathRay& ray, float footprint, float distance, bool seenDirectly,
+                           std::vector<PathRay>& to);
 
   private:
     void shade(const Scene& scene, const PathRay& ray, const reflection::TracedHit& hit, bool mirrorAgain,

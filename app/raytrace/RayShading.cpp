@@ -146,6 +146,28 @@ std::optional<GlassPoint> RayShading::glass(const PlacedMesh& placed, const MetT
     return std::nullopt;
 }
 
+std::optional<WetGround> RayShading::wetGround(const PlacedMesh& placed, const reflection::TracedHit& hit,
+                                               const MetTriangle& triangle,
+                                               const glm::vec3& direction) const {
+    if (placed.kind != PlacedMesh::Kind::city || !meshes_->isGround(placed.mesh, hit.part, hit.triangle))
+        return std::nullopt;
+    const std::uint32_t material = triangle.corner[2]->material;
+    const city::Pattern pattern =
+        material < city_->materials.size() ? city_->materials[material].pattern : city::Pattern::plain;
+    const glm::vec2 weights(hit.u, hit.v);
+    const glm::vec3 normal =
+        blend(triangle.corner[0]->normal, triangle.corner[1]->normal, triangle.corner[2]->normal, weights);
+    return app::wetGround(pattern, normal, glm::vec2(triangle.at(weights)), -direction.z);
+}
+
+glm::vec3 RayShading::wetSurroundings(const MetTriangle& triangle, const glm::vec2& weights,
+                                      const glm::vec3& direction, const WetGround& ground) const {
+    const glm::vec3 normal =
+        blend(triangle.corner[0]->normal, triangle.corner[1]->normal, triangle.corner[2]->normal, weights);
+    return app::wetSurroundings(lighting_, {direction.x, direction.y, -direction.z}, ground.puddle,
+                                sunAt(triangle.at(weights), normal));
+}
+
 void RayShading::cornerNormals(const PlacedMesh& placed, const MetTriangle& triangle,
                                std::array<glm::vec3, 3>& normals) {
     for (std::size_t k = 0; k < 3; ++k)

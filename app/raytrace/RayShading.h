@@ -9,6 +9,7 @@
 #include "app/frame/GlassShading.h"
 #include "app/frame/SunMap.h"
 #include "app/frame/VehicleShading.h"
+#include "app/frame/WetGround.h"
 #include "app/raytrace/RayScene.h"
 
 namespace app {
@@ -78,6 +79,13 @@ class RayShading {
     /// material and texture coordinates where it passes the panes' plane: see city::panesOf.
     std::optional<GlassPoint> glass(const PlacedMesh& placed, const MetTriangle& triangle,
                                     const glm::vec2& weights, const glm::vec3& direction) const;
+    /// What rain makes of a point of the city that a ray met, whose light is as `city` says times `under`;
+    /// nothing where rain changes nothing (walls, roofs, what stands on the ground).
+    std::optional<WetGround> wetGround(const PlacedMesh& placed, const reflection::TracedHit& hit,
+                                       const MetTriangle& triangle, const glm::vec3& direction) const;
+    /// What it mirrors where no mirror ray goes on.
+    glm::vec3 wetSurroundings(const MetTriangle& triangle, const glm::vec2& weights,
+                              const glm::vec3& direction, const WetGround& ground) const;
     /// Texture level for a ray that is `footprint` metres wide and meets the triangle at this cosine.
     PatternSampler::Level levelOf(const MetTriangle& triangle, float footprint, float cosine) const;
     /// The same as the rasteriser chooses it: from three neighbouring pixels' rays from one point.

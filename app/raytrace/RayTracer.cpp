@@ -83,8 +83,11 @@ struct RayTracer::Impl {
         scene.commit();
         return scene;
     }
-    RayPaths::Scene pathsIn(const RayScene& scene, bool glass = false) const {
-        return {&shading, &scene, &frame, glass, nullptr, filter};
+    RayPaths::Scene pathsIn(const RayScene& scene, const TraceOptions& options) const {
+        RayPaths::Scene paths{&shading, &scene, &frame, options.windows > 0, nullptr, filter};
+        paths.wet = options.wet;
+        paths.seed = options.seed;
+        return paths;
     }
 
     struct Scratch {
@@ -99,8 +102,8 @@ struct RayTracer::Impl {
 
     void shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
                     const reflection::TracedRay& ray, const reflection::TracedHit& hit, const glm::ivec2& at,
-                    const TraceOptions& options, TracedPicture& picture, std::size_t index,
-                    Scratch& out) const;
+                    const TraceOptions& options, const RayPaths::Scene& paths, TracedPicture& picture,
+                    std::size_t index, Scratch& out) const;
     PixelRays pixelRays(const ViewRays& rays, const glm::ivec2& pixel) const;
 
     const city::CityModel& city;
@@ -147,8 +150,9 @@ PixelRays RayTracer::Impl::pixelRays(const ViewRays& rays, const glm::ivec2& pix
 
 void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shadows, const RayScene& scene,
                                  const reflection::TracedRay& ray, const reflection::TracedHit& hit,
-                                 const glm::ivec2& at, const TraceOptions& options, TracedPicture& picture,
-                                 std::size_t index, Scratch& out) const {
+                                 const glm::ivec2& at, const TraceOptions& options,
+                                 const RayPaths::Scene& paths, TracedPicture& picture, std::size_t index,
+                                 Scratch& out) const {
     picture.displayFactor[index] = shadows.factor(ray.direction, hit.found() ? hit.t : infinity);
     picture.distance[index] = hit.t;
     if (!hit.found()) {
@@ -184,6 +188,22 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
                 return;
             }
             picture.radiance[index] = shading.city(placed, triangle, weights, level);
+            const auto ground =
+                options.wet ? shading.wetGround(placed, hit, triangle, ray.direction) : std::nullopt;
+            if (!ground) return;
+            picture.radiance[index] *= ground->under * (1 - ground->mirrored);
+            if (!(ground->mirrored > 0)) return;
+            picture.kind[index] = SeenKind::water;
+            picture.fresnel[index] = ground->mirrored;
+            if (options.windows <= 0) {
+                picture.radiance[index] +=
+                    shading.wetSurroundings(triangle, weights, ray.direction, *ground) * ground->mirrored;
+                return;
+            }
+            PathRay met{{},   ray.direction, 0, ray.spread, glm::vec3(1), static_cast<std::uint32_t>(index),
+                        pixel};
+            RayPaths::addWetRays(paths, *ground, triangle.at(weights), met, ray.spread * hit.t, hit.t, true,
+                                 out.paths.rays);
             return;
         }
         case PlacedMesh::Kind::vehicle:
@@ -246,7 +266,8 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
     const GroundShadows everywhere(my.frame, my.meshes, my.shading);
     RayPaths::Scene throughGlass;
     if (mirrored) {
-        throughGlass = my.pathsIn(*mirrored, true);
+        throughGlass = my.pathsIn(*mirrored, options);
+        throughGlass.film = options.film;
         throughGlass.shadows = &everywhere;
         throughGlass.filter = my.filter;
     }
@@ -265,15 +286,15 @@ TracedPicture RayTracer::renderRows(const View& view, const TraceOptions& option
         const std::size_t row = static_cast<std::size_t>(y - first) * width;
         for (int x = 0; x < view.size.x; ++x) {
             const auto i = static_cast<std::size_t>(x);
-            my.shadePixel(rays, shadows, seen, scratch.rays[i], scratch.hits[i], {x, y}, options, picture,
-                          row + i, scratch);
+            my.shadePixel(rays, shadows, seen, scratch.rays[i], scratch.hits[i], {x, y}, options,
+                          throughGlass, picture, row + i, scratch);
         }
         // Each pixel's ray adds to its own sum.
         if (!scratch.paths.rays.empty())
             scratch.paths.follow(throughGlass, options.windows - 1, picture.radiance);
         if (scratch.mirrors.empty()) return;
         scratch.light.resize(scratch.mirrors.size());
-        scratch.gatherer.gather(my.pathsIn(*mirrored, options.windows > 0), rays, scratch.mirrors, options,
+        scratch.gatherer.gather(my.pathsIn(*mirrored, options), rays, scratch.mirrors, options,
                                 scratch.light);
         for (std::size_t i = 0; i < scratch.mirrors.size(); ++i) {
             const std::size_t index = row + static_cast<std::size_t>(scratch.mirrors[i].pixel.x);
@@ -348,8 +369,8 @@ void RayTracer::mirrored(const View& view, std::span<const std::uint32_t> chosen
         }
         scratch.light.resize(scratch.mirrors.size());
         pixelCount += scratch.mirrors.size();
-        rayCount +=
-            scratch.gatherer.gather(my.pathsIn(around), rays, scratch.mirrors, options, scratch.light);
+        rayCount += scratch.gatherer.gather(my.pathsIn(around, options), rays, scratch.mirrors, options,
+                                            scratch.light);
         for (std::size_t i = 0; i < scratch.mirrors.size(); ++i) {
             const glm::ivec2 p = scratch.mirrors[i].pixel;
             const std::size_t index = static_cast<std::size_t>(p.y) * width + static_cast<std::size_t>(p.x);
@@ -406,8 +427,8 @@ reflection::ReferenceMap RayTracer::environmentMap(const glm::dvec3& centre, int
             }
             const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(faceSize) +
                                       static_cast<std::size_t>(x);
-            scratch.paths.follow(my.pathsIn(scene), std::max(options.bounces, 1) - 1, {&map.colour[index], 1},
-                                 distances);
+            scratch.paths.follow(my.pathsIn(scene, options), std::max(options.bounces, 1) - 1,
+                                 {&map.colour[index], 1}, distances);
             map.distance[index] = reflection::representativeDistance(distances);
         }
     });

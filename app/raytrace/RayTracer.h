@@ -31,10 +31,14 @@ struct TraceOptions {
     /// Mirrors in a row that begin with the city's glass: 0 leaves panes as they are painted. One ray a
     /// pixel.
     int windows = 0;
+    /// It has rained: wet ground mirrors, as the first of `windows` mirrors in a row, or of `bounces` in what
+    /// vehicles mirror; with 0 of them by mean light. Puddles by one ray a pixel.
+    bool wet = false;
+    int film = 64;  ///< rays of a pixel for what the film of water on rough ground spreads
 };
 
 /// What a pixel or texel shows.
-enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle, glass };
+enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle, glass, water };
 
 /// A ray traced picture, one sample a pixel for what is seen directly (as the rasteriser without
 /// antialiasing), top row first.

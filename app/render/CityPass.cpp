@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
-#include "app/frame/MirrorPlan.h"
-#include "reflection/planar/Gloss.h"
+#include "app/frame/WetGround.h"
 
 namespace app {
 
@@ -146,12 +145,12 @@ CityPass::Counts CityPass::drawWet(const PassView& view, PassTarget target, cons
     Counts counts;
     reflection::gl::Program& program = wetPrograms_[static_cast<std::size_t>(target)][wet != nullptr ? 1 : 0];
     if (!program) {
-        std::vector<std::string> defines{"WET"};
+        std::vector<std::string> defines = wetDefinitions();
+        defines.emplace_back("WET");
         if (target == PassTarget::cube) defines.emplace_back("CUBE");
         if (wet != nullptr) defines.emplace_back("MIRROR");
         program = reflection::gl::Program::fromFiles({"city.vert", "wet_ground.frag"}, defines);
     }
-    program.set("filmAngle", static_cast<float>(reflection::glossAngle(wetRoughness)));
     if (wet != nullptr) {
         program.set("planeHeight", static_cast<float>(wet->height - view.eye.z));
         program.set("uvPerRadian", wet->uvPerRadian);

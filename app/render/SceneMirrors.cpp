@@ -41,7 +41,8 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
             fine, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
             static_cast<float>(my_.detail.vehicleTolerance));
         const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
-        if (wet_ && !isRoad(node) && !roadBelow(node))
+        // In the road's own image, from below, that is the sides of kerbs.
+        if (wet_ && !roadBelow(node))
             triangles += my_.cityPass.drawWet(pass, PassTarget::cube, nullptr).triangles;
         const GlassPass::Counts glass = my_.drawPlainGlass(pass, PassTarget::cube, {&plan_, root_}, &node);
         my_.signalLamps.draw(pass, PassTarget::cube, my_.signalColours);

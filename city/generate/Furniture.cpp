@@ -38,7 +38,9 @@ Prototype makeStreetLamp(const Palette& p) {
     Prototype lamp = single("street lamp", std::move(m));
     Mesh far;
     addTube(far, {0, 0, 0}, {0, 0, 7.75f}, 0.09f, 0.05f, 4, p.metalDark);
-    box(far, {0, -0.1f, 7.75f}, {2.1f, 0.1f, 7.9f}, p.metalDark);
+    box(far, {0, -0.1f, 7.78f}, {2.1f, 0.1f, 7.9f}, p.metalDark);
+    // What shines is seen from afar, and as long glows on wet streets.
+    box(far, {1.32f, -0.14f, 7.74f}, {2.08f, 0.14f, 7.78f}, p.lampGlass, boxAll & ~boxTop);
     lamp.levels.push_back({std::move(far), 0.3f});
     return lamp;
 }

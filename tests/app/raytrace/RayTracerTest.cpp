@@ -11,6 +11,7 @@
 
 #include "app/frame/Sky.h"
 #include "app/raytrace/PartedPicture.h"
+#include "app/raytrace/RayPaths.h"
 #include "app/raytrace/ViewRays.h"
 #include "reflection/reference_maps/CubeMapping.h"
 #include "tests/app/raytrace/MirrorWorld.h"
@@ -217,6 +218,43 @@ TEST(RayTracerTest, interruptedPictureGoesOnToTheSameBytes) {
     EXPECT_NE(key, pictureKey(street.city, moved, street.view, options));
     EXPECT_NE(key, pictureKey(street.city, street.frame, street.view, {3, 3, false, 4}));
     std::filesystem::remove_all(folder);
+}
+
+TEST(RayTracerTest, aFilmOfWaterSpreadsItsRaysAsItsRoughnessSays) {
+    RayPaths::Scene scene;
+    scene.film = 4096;
+    WetGround ground;
+    ground.lies = 1;
+    ground.mirrored = 0.2f;
+    PathRay ray;
+    const float low = 0.5f;  // radians by which the eye looks down
+    ray.direction = {std::cos(low), 0, -std::sin(low)};
+    std::vector<PathRay> rays;
+    RayPaths::addWetRays(scene, ground, {10, 20, 0}, ray, 0.01f, 5, true, rays);
+    ASSERT_EQ(rays.size(), 4096u);
+    double weight = 0, along = 0, across = 0;
+    for (const PathRay& r : rays) {
+        ASSERT_GT(r.direction.z, 0);
+        EXPECT_GT(r.origin.z, 0);
+        weight += r.weight.x;
+        along += std::pow(std::asin(r.direction.z) - low, 2.0);
+        across += std::pow(std::atan2(r.direction.y, r.direction.x), 2.0);
+    }
+    EXPECT_NEAR(weight, 0.2 * wet::filmShare, 1e-4);
+    // Second moments of the small angles, to the second order of 5 degrees.
+    const double n = static_cast<double>(rays.size()), sigma = filmAngle();
+    EXPECT_NEAR(std::sqrt(along / n) / sigma, 1, 0.03);
+    EXPECT_NEAR(std::sqrt(across / n) / (sigma * std::tan(low)), 1, 0.05);
+    // In mirrors in a row by so many rays as the light is worth; in a puddle by one.
+    ray.weight = glm::vec3(0.1f);
+    rays.clear();
+    RayPaths::addWetRays(scene, ground, {10, 20, 0}, ray, 0.01f, 5, false, rays);
+    EXPECT_LT(rays.size(), 4096u / 8);
+    ground.puddle = 1;
+    rays.clear();
+    RayPaths::addWetRays(scene, ground, {10, 20, 0}, ray, 0.01f, 5, true, rays);
+    ASSERT_EQ(rays.size(), 1u);
+    EXPECT_NEAR(std::asin(rays[0].direction.z), low, 2 * wet::rippleSlope);
 }
 
 TEST(RayTracerTest, emptyViewsAndScenesGiveEmptyPictures) {

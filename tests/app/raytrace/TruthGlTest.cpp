@@ -238,6 +238,43 @@ TEST_F(TruthGlTest, windowsDrawnAreWindowsTraced) {
     }
 }
 
+TEST_F(TruthGlTest, wetStreetsDrawnAreWetStreetsTraced) {
+    const city::GlassFronts none;
+    renderer_->setGlass(none.fronts);
+    renderer_->prepare(frame_);
+    const MirrorPlanner planner(none.fronts);
+    MirrorSettings settings;
+    settings.wetRoad = 0;
+    const MirrorPlan plan = planner.plan(frame_.views, settings);
+    ASSERT_TRUE(plan.counters.road);
+    const auto wetDrawn = [&](const PlanarReflections& planar) {
+        renderer_->drawView(view_, {}, target_.framebuffer(), planar);
+        const Image8 image = readPixels(target_.framebuffer(), size);
+        std::vector<glm::vec3> drawn(image.rgba.size() / 4);
+        for (std::size_t i = 0; i < drawn.size(); ++i)
+            drawn[i] = glm::vec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0f;
+        return drawn;
+    };
+    const std::vector<glm::vec3> dull = wetDrawn({nullptr, 0, true}), shining = wetDrawn({&plan, 0, true}),
+                                 dry = wetDrawn({});
+    prepareTracer();
+    TraceOptions trace = plain;
+    trace.wet = true;
+    const TracedPicture withoutImage = tracer_->render(view_, trace);
+    trace.windows = 2;
+    const TracedPicture withImage = tracer_->render(view_, trace);
+    const std::vector<unsigned char> mask =
+        of(SeenKind::water, withImage, outside(edgesOf(withImage, view_)));
+    ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 2000);
+    // With none mirrored both are the same; rounding of places, from which puddles follow, moves their shores
+    // by parts of a pixel.
+    EXPECT_GE(agreement(withoutImage, dull, mask), 45);
+    EXPECT_LT(agreement(withoutImage, dry, mask), 30);
+    // Mirrored, outlines within the image are not told apart.
+    EXPECT_GE(agreement(withImage, shining, mask), 30);
+    EXPECT_GT(agreement(withImage, shining, mask), agreement(withImage, dull, mask) + 6);
+}
+
 TEST(ScreenLightTest, sharedExponentKeepsNineBitsOfTheBrightest) {
     for (const glm::vec3 v :
          {glm::vec3(0), glm::vec3(1, 0.5f, 0.25f), glm::vec3(200, 3, 0.01f), glm::vec3(0.9999f, 0.2f, 0.1f),
