@@ -61,6 +61,7 @@ MirrorStage::MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::
     : impl_(std::make_unique<Impl>(world, size, curved, [&] {
           reflection::MirrorPassOptions same = options;
           same.environments = curved;
+          same.layered = same.together && MirrorWorldRenderer::canDrawLayers();
           same.distances = same.distances || world.needsDistances();
           for (const MirrorWorld::Curved& c : world.curved)
               same.prefilter = same.prefilter || c.reflector.surface.roughness > 0;
@@ -74,6 +75,7 @@ const reflection::ReflectionTree& MirrorStage::draw(reflection::TreeSettings set
     my.pass.drawEnvironments(my.tree, my.renderer, my.arrays.curved.size());
     for (const reflection::EnvironmentJob& job : my.tree.environments)
         my.arrays.curved[job.curved].hasMap = true;
+    my.pass.makeReflections(my.tree, 0, my.renderer);
     my.drawScene();
     my.pass.drawReflections(my.tree, 0, my.renderer, my.target);
     my.renderer.finishRoot(my.tree, 0);
@@ -106,6 +108,10 @@ std::vector<glm::vec3> MirrorStage::read() const {
 
 glm::ivec2 MirrorStage::size() const {
     return impl_->size;
+}
+
+void MirrorStage::setClusters(bool clusters) {
+    impl_->renderer.setClusters(clusters);
 }
 
 void MirrorStage::setOblique(bool oblique) {

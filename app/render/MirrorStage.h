@@ -27,6 +27,8 @@ class MirrorStage {
     /// Linear radiance, row 0 at the top. Waits.
     std::vector<glm::vec3> read() const;
     glm::ivec2 size() const;
+    /// See MirrorWorldRenderer::setClusters.
+    void setClusters(bool clusters);
     /// By oblique near planes instead of clip distances.
     void setOblique(bool oblique);
 

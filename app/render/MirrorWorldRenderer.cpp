@@ -6,11 +6,11 @@
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "app/mirrors/LitShapes.h"
-#include "reflection/gl/Buffer.h"
+#include "app/render/MirrorWorldGeometry.h"
 #include "reflection/gl/Program.h"
 #include "reflection/gl/VertexArray.h"
 #include "reflection/planar/Gloss.h"
@@ -29,40 +29,33 @@ using reflection::ReflectionTree;
 
 namespace {
 
-struct Range {
-    GLsizei count = 0;
-    std::size_t first = 0;  ///< index
-    const void* offset() const { return reinterpret_cast<const void*>(first * sizeof(std::uint32_t)); }
-};
-
-/// The scene's triangles in one pair of buffers.
-struct Geometry {
-    gl::Buffer vertices, indices;
-    gl::VertexArray array;
-    std::vector<Range> objects, mirrors, curved;
-};
-
 /// What draws one kind of surface, for straight and for bent projections, seen plainly or in mirrors that
 /// fade. Compiled when first asked for: a rasteriser in software pays for a branch's lookups on both its
 /// sides, so there are many and a scene needs few.
 class Kind {
   public:
-    explicit Kind(std::vector<std::string> defines) : defines_(std::move(defines)) {}
-    const gl::Program& of(Projection p, bool faded) const {
+    explicit Kind(std::vector<std::string> defines, std::string_view vertices = "mirror_world.vert",
+                  std::string_view fragments = "mirror_world.frag")
+        : defines_(std::move(defines)), vertices_(vertices), fragments_(fragments) {}
+    const gl::Program& of(Projection p, bool faded, bool layered, bool nearness) const {
         const bool bent = p != Projection::perspective;
-        gl::Program& program = programs_[(bent ? 1u : 0u) + (faded ? 2u : 0u)];
+        gl::Program& program =
+            programs_[(bent ? 1u : 0u) + (faded ? 2u : 0u) + (layered ? 4u : 0u) + (nearness ? 8u : 0u)];
         if (!program) {
             std::vector<std::string> all = defines_;
             if (bent) all.emplace_back("PARABOLOID");
             if (faded) all.emplace_back("FADED");
-            program = gl::Program::fromFiles({"mirror_world.vert", "mirror_world.frag"}, all);
+            if (layered) all.emplace_back("LAYERED");
+            if (nearness) all.emplace_back("NEARNESS");
+            program = gl::Program::fromFiles({vertices_, fragments_}, all);
         }
         return program;
     }
 
   private:
     std::vector<std::string> defines_;
-    mutable std::array<gl::Program, 4> programs_;
+    std::string_view vertices_, fragments_;
+    mutable std::array<gl::Program, 16> programs_;
 };
 
 /// How mirrors on the way to an image fade what it shows: from its glass on, all of them.
@@ -71,66 +64,18 @@ struct Fading {
     HalfSpace from{0, 0, 0, 1};
 };
 
-glm::vec3 withoutMap(const glm::vec3& tint, const glm::vec3& reflectance, const glm::vec3& beyond) {
-    return tint * (1.f - reflectance) + reflectance * beyond;
-}
-
-LitMesh meshOf(const MirrorWorld::Flat& flat, const glm::vec3& colour) {
-    LitMesh mesh;
-    for (const glm::dvec3& c : flat.mirror.plane.corners())
-        mesh.corners.push_back({glm::vec3(c), glm::vec3(flat.mirror.plane.normal()), colour});
-    for (std::uint32_t i = 2; i < mesh.corners.size(); ++i)
-        mesh.indices.insert(mesh.indices.end(), {0, i - 1, i});
-    return mesh;
-}
-
 }  // namespace
 
 struct MirrorWorldRenderer::Impl {
-    Impl(const MirrorWorld& w, CurvedMaps c, bool p)
-        : world(w), curvedMaps(c), parallax(p), plain(geometryOf(0)) {
+    Impl(const MirrorWorld& w, CurvedMaps c, bool p) : world(w), curvedMaps(c), parallax(p), plain(w, 0) {
         if (c == CurvedMaps::dualParaboloid) {
             // An edge may bend by some hundredths of its length at a distance of as much.
-            fine.emplace(geometryOf(0.25f));
+            fine.emplace(w, 0.25f);
         }
         environment.resize(w.curved.size(), 0);
     }
 
-    /// `longest`: edges are cut to that length; 0: left alone.
-    Geometry geometryOf(float longest) const {
-        Geometry g;
-        std::vector<LitMesh::Corner> corners;
-        std::vector<std::uint32_t> indices;
-        const auto add = [&](const LitMesh& given) {
-            const LitMesh mesh = longest > 0 ? subdivided(given, longest) : given;
-            const Range range{static_cast<GLsizei>(mesh.indices.size()), indices.size()};
-            const auto base = static_cast<std::uint32_t>(corners.size());
-            corners.insert(corners.end(), mesh.corners.begin(), mesh.corners.end());
-            for (std::uint32_t i : mesh.indices) indices.push_back(base + i);
-            return range;
-        };
-        for (const LitMesh& m : world.objects) g.objects.push_back(add(m));
-        for (const MirrorWorld::Flat& f : world.mirrors)
-            g.mirrors.push_back(
-                add(meshOf(f, withoutMap(f.tint, f.mirror.plane.surface().reflectance, world.beyond))));
-        for (const MirrorWorld::Curved& c : world.curved) {
-            LitMesh mesh = c.mesh;
-            for (LitMesh::Corner& corner : mesh.corners)
-                corner.colour = withoutMap(c.tint, c.reflector.surface.reflectance, world.beyond);
-            g.curved.push_back(add(mesh));
-        }
-        g.vertices = gl::Buffer::filled(std::span<const LitMesh::Corner>(corners));
-        g.indices = gl::Buffer::filled(std::span<const std::uint32_t>(indices));
-        g.array = gl::VertexArray::create();
-        g.array.buffer(0, g.vertices.name(), sizeof(LitMesh::Corner))
-            .attribute(0, 0, 3, GL_FLOAT, false, offsetof(LitMesh::Corner, position))
-            .attribute(1, 0, 3, GL_FLOAT, false, offsetof(LitMesh::Corner, normal))
-            .attribute(2, 0, 3, GL_FLOAT, false, offsetof(LitMesh::Corner, colour))
-            .indices(g.indices.name());
-        return g;
-    }
-
-    const Geometry& geometry(const EyeView& view) const {
+    const MirrorWorldGeometry& geometry(const EyeView& view) const {
         return view.projection == Projection::paraboloid && fine ? *fine : plain;
     }
 
@@ -147,10 +92,17 @@ struct MirrorWorldRenderer::Impl {
         glEnable(GL_CLIP_DISTANCE1);
     }
 
+    void into(bool environmentFace, int targetLayer) {
+        face = environmentFace;
+        layer = targetLayer;
+    }
+
     /// The program of a kind, ready to draw into an image.
     const gl::Program& use(const Kind& kind, const EyeView& view, const glm::dmat4& clipFromView,
                            const HalfSpace& glass, const Fading& fading) const {
-        const gl::Program& p = kind.of(view.projection, fading.perMetre > 0);
+        const gl::Program& p =
+            kind.of(view.projection, fading.perMetre > 0, layer != MirrorTarget::none, parallax && face);
+        p.set("layer", layer);
         if (fading.perMetre > 0) {
             p.set("fading", static_cast<float>(fading.perMetre));
             p.set("fadeFrom", glm::vec4(fading.from));
@@ -159,15 +111,22 @@ struct MirrorWorldRenderer::Impl {
         p.set("clipFromRelative", glm::mat4(clipFromView * glm::dmat4(view.viewFromWorld)));
         p.set("viewFromRelative", glm::mat3(view.viewFromWorld));
         p.set("nearPlane", static_cast<float>(clipFromView[3][2]));
-        p.set("keepNearness", parallax && face ? 1 : 0);
         p.set("glass", oblique ? glm::vec4(0, 0, 0, 1) : glm::vec4(glass));
         p.use();
         return p;
     }
 
-    void draw(const Range& range) {
-        glDrawElements(GL_TRIANGLES, range.count, GL_UNSIGNED_INT, range.offset());
-        triangles += static_cast<std::uint64_t>(range.count / 3);
+    /// What an eye sees of a range; all of it where nothing is culled.
+    void listSeen(const MirrorWorldGeometry::Range& r, const glm::dvec3& eye,
+                  const reflection::HalfSpaces& frustum) {
+        if (clusters)
+            list.addSeen(r, eye, frustum);
+        else
+            list.add(r);
+    }
+    void draw(const MirrorWorldGeometry::Range& range) {
+        list.add(range);
+        list.draw();
     }
 
     /// Each mirror on the way fades all that it shows, what other mirrors show in it included.
@@ -207,29 +166,16 @@ struct MirrorWorldRenderer::Impl {
                    const Fading& fading, std::span<const std::uint32_t> objects,
                    const reflection::HalfSpaces& frustum, std::uint32_t hidden) {
         setState();
-        const Geometry& g = geometry(view);
-        g.array.bind();
+        const MirrorWorldGeometry& g = geometry(view);
+        g.bind();
         use(matte, view, clipFromView, glass, fading);
-        counts.clear();
-        offsets.clear();
-        std::size_t end = 0;
-        const auto list = [&](const Range& r) {
-            triangles += static_cast<std::uint64_t>(r.count / 3);
-            // Neighbours in the buffer are one draw: each costs a software rasteriser microseconds.
-            if (!counts.empty() && r.first == end) {
-                counts.back() += r.count;
-            } else {
-                counts.push_back(r.count);
-                offsets.push_back(r.offset());
-            }
-            end = r.first + static_cast<std::size_t>(r.count);
-        };
-        for (std::uint32_t o : objects) list(g.objects[o]);
+        const auto show = [&](const MirrorWorldGeometry::Range& r) { listSeen(r, view.eye, frustum); };
+        for (std::uint32_t o : objects) show(g.objects[o]);
         for (std::size_t m = 0; m < g.mirrors.size(); ++m) {
             const reflection::MirrorPlane& plane = world.mirrors[m].mirror.plane;
             if (!flatApplied[m] && plane.signedDistance(view.eye) > 0 &&
                 reflection::touches(frustum, plane.point() - view.eye, plane.radius()))
-                list(g.mirrors[m]);
+                show(g.mirrors[m]);
         }
         std::vector<std::uint32_t> shown;
         for (std::uint32_t c = 0; c < g.curved.size(); ++c) {
@@ -240,10 +186,9 @@ struct MirrorWorldRenderer::Impl {
             if (environment[c] != 0)
                 shown.push_back(c);
             else
-                list(g.curved[c]);
+                show(g.curved[c]);
         }
-        glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
-                            static_cast<GLsizei>(counts.size()));
+        list.draw();
         if (!shown.empty()) {
             for (std::uint32_t c : shown) {
                 const reflection::MirrorSurface& surface = world.curved[c].reflector.surface;
@@ -255,7 +200,8 @@ struct MirrorWorldRenderer::Impl {
                 p.set("glossAngle",
                       static_cast<float>(reflection::glossAngle(static_cast<double>(surface.roughness))));
                 p.set("mapCentre", glm::vec3(world.curved[c].reflector.centre - view.eye));
-                draw(g.curved[c]);
+                show(g.curved[c]);
+                list.draw();
             }
         }
     }
@@ -269,11 +215,11 @@ struct MirrorWorldRenderer::Impl {
 
     void drawSky(const EyeView& view, const glm::dmat4& clipFromView, bool faded) const {
         setState();
-        const gl::Program& p = view.projection == Projection::perspective ? sky : skyBent;
+        const gl::Program& p = sky.of(view.projection, false, layer != MirrorTarget::none, parallax && face);
+        p.set("layer", layer);
         p.set("relativeFromView", glm::mat3(glm::transpose(view.viewFromWorld)));
         p.set("projection",
               glm::vec4(clipFromView[0][0], clipFromView[1][1], clipFromView[2][0], clipFromView[2][1]));
-        p.set("keepNearness", parallax && face ? 1 : 0);
         // Infinitely far, nothing is left of it.
         p.set("zenith", faded ? glm::vec3(0) : world.zenith);
         p.set("horizon", faded ? glm::vec3(0) : world.horizon);
@@ -289,20 +235,21 @@ struct MirrorWorldRenderer::Impl {
     const MirrorWorld& world;
     CurvedMaps curvedMaps;
     bool parallax;
-    bool face = false;  ///< an environment map's is being drawn
-    Geometry plain;
-    std::optional<Geometry> fine;
+    bool face = false;               ///< an environment map's is being drawn
+    int layer = MirrorTarget::none;  ///< of the target
+    MirrorWorldGeometry plain;
+    std::optional<MirrorWorldGeometry> fine;
     Kind matte{{"MATTE"}}, flat{{"FLAT"}}, flatWithDistance{{"FLAT", "DISTANCE"}},
-        rough{{"FLAT", "DISTANCE", "ROUGH"}}, bumped{{"FLAT", "DISTANCE", "BUMPED"}}, sphere{{"VIEW"}},
+        rough{{"FLAT", "DISTANCE", "ROUGH"}}, glossed{{"FLAT", "DISTANCE", "GLOSSED"}},
+        bumped{{"FLAT", "DISTANCE", "BUMPED"}}, sphere{{"VIEW"}}, roughSphere{{"VIEW", "ROUGH"}},
         curved{curvedDefines(curvedMaps, parallax, false)},
         roughCurved{curvedDefines(curvedMaps, parallax, true)};
-    gl::Program sky = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"});
-    gl::Program skyBent = gl::Program::fromFiles({"mirror_sky.vert", "mirror_sky.frag"}, {"PARABOLOID"});
+    Kind sky{{}, "mirror_sky.vert", "mirror_sky.frag"};
     gl::VertexArray nothing = gl::VertexArray::create();
     std::vector<std::uint32_t> environment;
     std::vector<bool> flatApplied, curvedApplied;
-    std::vector<GLsizei> counts;
-    std::vector<const void*> offsets;
+    MirrorDrawList list;
+    bool clusters = true;
     std::uint64_t triangles = 0;
     bool oblique = false;
 };
@@ -310,6 +257,14 @@ struct MirrorWorldRenderer::Impl {
 MirrorWorldRenderer::MirrorWorldRenderer(const MirrorWorld& world, CurvedMaps curved, bool parallax)
     : impl_(std::make_unique<Impl>(world, curved, parallax)) {}
 MirrorWorldRenderer::~MirrorWorldRenderer() = default;
+
+bool MirrorWorldRenderer::canDrawLayers() {
+    return epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
+}
+
+void MirrorWorldRenderer::setClusters(bool clusters) {
+    impl_->clusters = clusters;
+}
 
 void MirrorWorldRenderer::setOblique(bool oblique) {
     impl_->oblique = oblique;
@@ -319,7 +274,7 @@ void MirrorWorldRenderer::drawRoot(const ReflectionTree& tree, std::uint32_t roo
     const ReflectionRoot& r = tree.roots[root];
     glFrontFace(r.view.mirrored() ? GL_CW : GL_CCW);
     impl_->markRoot(tree, r);
-    impl_->face = false;
+    impl_->into(false, MirrorTarget::none);
     impl_->drawImage(r.view, r.view.clipFromView, {0, 0, 0, 1}, {}, tree.objectsOf(r), r.frustum, r.curved);
 }
 
@@ -327,33 +282,34 @@ void MirrorWorldRenderer::drawNode(const ReflectionTree& tree, const ReflectionN
                                    const MirrorTarget&) {
     const auto index = static_cast<std::uint32_t>(&node - tree.nodes.data());
     impl_->markApplied(tree, [&](const ReflectionNode& n) { return n.parent == index; });
-    impl_->face = false;
+    impl_->into(false, MirrorTarget::none);
     impl_->drawImage(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView, node.glass,
                      impl_->fadingOf(tree, &node), tree.objectsOf(node), node.frustum, node.hiddenCurved);
 }
 
 void MirrorWorldRenderer::drawFace(const ReflectionTree& tree, const ReflectionRoot& face,
-                                   const MirrorTarget&) {
+                                   const MirrorTarget& target) {
     impl_->markRoot(tree, face);
-    impl_->face = true;
+    impl_->into(true, target.layer);
     impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, {}, tree.objectsOf(face), face.frustum,
                      face.curved);
 }
 
 void MirrorWorldRenderer::finishRoot(const ReflectionTree& tree, std::uint32_t root) {
-    impl_->face = false;
+    impl_->into(false, MirrorTarget::none);
     impl_->drawSky(tree.roots[root].view, tree.roots[root].view.clipFromView, false);
 }
 
 void MirrorWorldRenderer::finishNode(const ReflectionTree& tree, const ReflectionNode& node,
                                      const MirrorTarget&) {
-    impl_->face = false;
+    impl_->into(false, MirrorTarget::none);
     impl_->drawSky(node.view, impl_->oblique ? node.obliqueClipFromView : node.clipFromView,
                    impl_->fadingOf(tree, &node).perMetre > 0);
 }
 
-void MirrorWorldRenderer::finishFace(const ReflectionTree&, const ReflectionRoot& face, const MirrorTarget&) {
-    impl_->face = true;
+void MirrorWorldRenderer::finishFace(const ReflectionTree&, const ReflectionRoot& face,
+                                     const MirrorTarget& target) {
+    impl_->into(true, target.layer);
     impl_->drawSky(face.view, face.view.clipFromView, false);
 }
 
@@ -366,7 +322,7 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
                                     const MirrorTarget& target) {
     Impl& my = *impl_;
     my.setState();
-    my.face = parent == nullptr && tree.roots[node.root].isEnvironment();
+    my.into(parent == nullptr && tree.roots[node.root].isEnvironment(), target.layer);
     // The image in which the reflector is met.
     const EyeView& view = parent != nullptr ? parent->view : tree.roots[node.root].view;
     const glm::dmat4& clip = parent == nullptr ? view.clipFromView
@@ -374,11 +330,17 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
                                                : parent->clipFromView;
     const HalfSpace glass = parent != nullptr ? parent->glass : HalfSpace(0, 0, 0, 1);
     const Fading fading = my.fadingOf(tree, parent);
-    const Geometry& g = my.geometry(view);
-    g.array.bind();
+    const MirrorWorldGeometry& g = my.geometry(view);
+    g.bind();
     glBindTextureUnit(8, map.colour);
     if (!node.planar()) {
-        const gl::Program& p = my.use(my.sphere, view, clip, glass, fading);
+        const gl::Program& p =
+            my.use(map.blurred != 0 ? my.roughSphere : my.sphere, view, clip, glass, fading);
+        glBindTextureUnit(9, map.blurred);
+        p.set("blurredScale", map.blurredScale);
+        p.set("uvLimits", map.uvLimits);
+        p.set("blurLevels", map.blurLevels);
+        p.set("glossAngle", static_cast<float>(reflection::glossAngle(static_cast<double>(node.roughness))));
         p.set("mapFromRelative", glm::mat3(node.view.viewFromWorld));
         p.set("mapScale", static_cast<float>(node.clipFromView[0][0]));
         const glm::vec2 low = glm::vec2(map.uvLimits) - 0.5f / map.texels;
@@ -386,12 +348,19 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
         p.set("mapLimits", map.uvLimits);
         p.set("reflectance", my.world.curved[node.curved].reflector.surface.reflectance);
         p.set("tint", my.world.curved[node.curved].tint);
-        my.draw(g.curved[node.curved]);
+        my.listSeen(g.curved[node.curved], view.eye,
+                    parent != nullptr ? parent->frustum : tree.roots[node.root].frustum);
+        my.list.draw();
         return;
     }
     const auto isBumped = [&](std::uint32_t m) { return my.world.mirrors[m].ripples.any(); };
     const bool bumped = map.distance != 0 && std::ranges::any_of(tree.mirrorsOf(node), isBumped);
-    const gl::Program& p = my.use(map.blurred != 0    ? my.rough
+    const auto isNodes = [&](std::uint32_t m) {
+        return my.world.mirrors[m].mirror.plane.surface().roughness == node.roughness;
+    };
+    const bool glossed = map.glossed != 0 && std::ranges::all_of(tree.mirrorsOf(node), isNodes);
+    const gl::Program& p = my.use(glossed             ? my.glossed
+                                  : map.blurred != 0  ? my.rough
                                   : bumped            ? my.bumped
                                   : map.distance != 0 ? my.flatWithDistance
                                                       : my.flat,
@@ -400,7 +369,7 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
     p.set("uvLimits", map.uvLimits);
     p.set("blurredScale", map.blurredScale);
     p.set("addDistance", target.withDistance && map.distance != 0 ? 1 : 0);
-    glBindTextureUnit(9, map.blurred);
+    glBindTextureUnit(9, glossed ? map.glossed : map.blurred);
     glBindTextureUnit(10, map.distance);
     p.set("blurLevels", map.blurLevels);
     p.set("uvPerTangent", 0.5f * glm::vec2(target.viewport.size()) *
@@ -426,18 +395,18 @@ void MirrorWorldRenderer::applyNode(const ReflectionTree& tree, const Reflection
 void MirrorWorldRenderer::drawMirrorShape(std::uint32_t mirror, const EyeView& view,
                                           const glm::dmat4& clipFromView, const HalfSpace& glass,
                                           const glm::vec3& colour) {
-    const Geometry& g = impl_->geometry(view);
-    g.array.bind();
+    const MirrorWorldGeometry& g = impl_->geometry(view);
+    g.bind();
     impl_->use(impl_->matte, view, clipFromView, glass, {});
     // A constant in place of the corners' colours.
-    glDisableVertexArrayAttrib(g.array.name(), 2);
+    glDisableVertexArrayAttrib(g.arrayName(), 2);
     glVertexAttrib3f(2, colour.r, colour.g, colour.b);
     impl_->draw(g.mirrors[mirror]);
-    glEnableVertexArrayAttrib(g.array.name(), 2);
+    glEnableVertexArrayAttrib(g.arrayName(), 2);
 }
 
 std::uint64_t MirrorWorldRenderer::trianglesDrawn() const {
-    return impl_->triangles;
+    return impl_->list.trianglesDrawn();
 }
 
 }  // namespace app

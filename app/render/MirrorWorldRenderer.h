@@ -17,6 +17,8 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
     /// keep distances (MirrorPassOptions::nearness) and are looked up where a ray ends.
     MirrorWorldRenderer(const MirrorWorld& world, reflection::CurvedMaps curved, bool parallax = false);
     ~MirrorWorldRenderer() override;
+    /// Whether the driver lets it draw into the layers that targets name.
+    static bool canDrawLayers();
 
     /// Everything but the sky and mirrors of which the tree has reflections in one of its roots; the target
     /// is bound, its depth cleared. When the reflections are drawn: `finishRoot`.
@@ -36,6 +38,10 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
     void finishFace(const reflection::ReflectionTree& tree, const reflection::ReflectionRoot& face,
                     const reflection::MirrorTarget& target) override;
     void publish(const reflection::EnvironmentJob& job, std::uint32_t texture) override;
+
+    /// Clusters of triangles that an image does not see are left out of it, where it has a frustum
+    /// (Economies::offScreen); true from the beginning.
+    void setClusters(bool clusters);
 
     /// Mirrors by oblique near planes in place of clip distances.
     void setOblique(bool oblique);

@@ -56,13 +56,9 @@ vec4 mirrorQuick(vec2 uv, float sigma, int levels) {
     return textureLod(mirrorBlurred, clamp(uv, first, max(last, first)), level);
 }
 
-// A rough mirror. `along`, `across`: texture coordinates by which the image moves when the reflected direction turns by one standard
-// deviation within the plane of incidence, and across it, for something far behind the glass. `levels`: MirrorMap::blurLevels.
-vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels) {
-    vec4 limits = uvLimits * blurredScale.xyxy;
-    vec2 uv = clamp((mirrorUv(fragment) + shift) * blurredScale, limits.xy, limits.zw);
-    along *= blurredScale;
-    across *= blurredScale;
+// A rough mirror at a place of mirrorBlurred. `along`, `across`: texture coordinates by which the image moves when the reflected direction turns
+// by one standard deviation within the plane of incidence, and across it, for something far behind the glass. `levels`: MirrorMap::blurLevels.
+vec3 mirrorGlossAt(vec2 uv, vec4 limits, vec2 along, vec2 across, int levels) {
     vec2 size = vec2(textureSize(mirrorBlurred, 0));
     float longest = length(along * size), shortest = min(length(across * size), longest);
     // How far behind the glass what is seen lies: of the neighbourhood that could be mixed in, then of that which is.
@@ -81,4 +77,26 @@ vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels)
         sum += weights[i] * (mirrorQuick(low, sigma, levels).rgb + mirrorQuick(high, sigma, levels).rgb);
     }
     return sum;
+}
+
+// The same at a fragment, coordinates those of mirrorColour.
+vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels) {
+    vec4 limits = uvLimits * blurredScale.xyxy;
+    vec2 uv = clamp((mirrorUv(fragment) + shift) * blurredScale, limits.xy, limits.zw);
+    return mirrorGlossAt(uv, limits, along * blurredScale, across * blurredScale, levels);
+}
+
+// Texture coordinates by which an image moves when a direction `v` of its view space turns towards `e`, for one radian; `uvPerTangent`: for
+// one unit of x / -z.
+vec2 mirrorMovement(vec3 v, vec3 e, vec2 uvPerTangent) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) * uvPerTangent; }
+
+// The spread of a rough mirror about a direction `d` from the eye to it, of unit length, in the plane of incidence and across it: xyz turns of `d`
+// by one standard deviation, `angle` of reflection/planar/Gloss.h. `n`: the mirror's normal, on the eye's side.
+void mirrorSpread(vec3 d, vec3 n, float angle, out vec3 along, out vec3 across) {
+    float facing = clamp(-dot(d, n), 1e-3, 1.0);
+    vec3 within = n + facing * d;
+    float size = length(within);
+    vec3 e1 = size > 1e-4 ? within / size : normalize(cross(d, abs(d.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
+    along = angle * e1;
+    across = angle * facing * cross(d, e1);
 }

@@ -1,8 +1,8 @@
 #version 450 core
-// MATTE: what the corners say. FLAT: a planar mirror with its map, DISTANCE: with distances, ROUGH: blurred, BUMPED: with waves. Otherwise a curved
+// MATTE: what the corners say. FLAT: a planar mirror with its map, DISTANCE: with distances, ROUGH: blurred here, GLOSSED: blurred already, BUMPED: with waves. Otherwise a curved
 // reflector: VIEW: view-dependent map, CUBE or PAIR: view-independent, PARALLAX: with distances in alpha, ROUGH: blurred. FADED: in an image that mirrors
-// on the way to the eye fade by distance.
-#if defined(FLAT)
+// on the way to the eye fade by distance. NEARNESS: alpha is 1 / depth along the greatest axis, for parallax in environment maps.
+#if defined(FLAT) || (defined(VIEW) && defined(ROUGH))
 #include "mirror_map.glsl"
 #endif
 layout(location = 0) in vec3 relative;
@@ -28,6 +28,10 @@ uniform mat3 mapFromRelative;  // view space of the map
 uniform float mapScale;        // ndc for one unit of x / -z
 uniform vec4 mapPart;          // of the texture in use: size, low corner
 uniform vec4 mapLimits;        // middles of its outermost texels
+#ifdef ROUGH
+uniform float glossAngle;  // radians
+uniform int blurLevels;
+#endif
 #elif defined(CUBE)
 layout(binding = 8) uniform samplerCube map;
 vec4 mapTowards(vec3 direction) { return textureLod(map, direction, 0.0); }
@@ -73,7 +77,6 @@ float greatest(vec3 v) {
     vec3 a = abs(v);
     return max(max(a.x, a.y), a.z);
 }
-uniform bool keepNearness;  // alpha is 1 / depth along the greatest axis, for parallax in environment maps
 
 #ifdef PARALLAX
 uniform vec3 mapCentre;  // relative to the eye
@@ -141,14 +144,13 @@ float leftOfLight() {
 }
 #endif
 
-#ifdef FLAT
-// Movement over the image when a direction of view space turns towards `e`, for one radian.
-vec2 movement(vec3 v, vec3 e) { return (v.xy * e.z - e.xy * v.z) / (v.z * v.z) * uvPerTangent; }
-#endif
-
 void main() {
     distanceOut = length(relative);
-    float alpha = keepNearness ? 1.0 / max(greatest(relative), 1e-6) : 1.0;
+#ifdef NEARNESS
+    float alpha = 1.0 / max(greatest(relative), 1e-6);
+#else
+    float alpha = 1.0;
+#endif
 #if defined(MATTE)
     colourOut = vec4(colour, alpha);
 #else
@@ -156,24 +158,24 @@ void main() {
     vec3 light;
 #if defined(FLAT)
 #ifdef ROUGH
-    float facing = clamp(-dot(d, mirrorNormal), 1e-3, 1.0);
-    vec3 within = mirrorNormal + facing * d;  // in the plane of incidence, across the view direction
-    float size = length(within);
-    vec3 e1 = size > 1e-4 ? within / size : normalize(cross(d, abs(d.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
-    vec3 e2 = cross(d, e1);
+    vec3 along, across;
+    mirrorSpread(d, mirrorNormal, glossAngle, along, across);
     vec3 v = viewFromRelative * d;
-    vec2 along = glossAngle * movement(v, viewFromRelative * e1);
-    vec2 across = glossAngle * facing * movement(v, viewFromRelative * e2);
-    light = mirrorGloss(gl_FragCoord.xy, vec2(0.0), along, across, blurLevels);
+    light = mirrorGloss(gl_FragCoord.xy, vec2(0.0), mirrorMovement(v, viewFromRelative * along, uvPerTangent),
+                        mirrorMovement(v, viewFromRelative * across, uvPerTangent), blurLevels);
+#elif defined(GLOSSED)
+    light = textureLod(mirrorBlurred, mirrorUv(gl_FragCoord.xy) * blurredScale, 0.0).rgb;
 #elif defined(BUMPED)
     light = mirrorBumped(d);
 #else
-    light = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
+    light = textureLod(mirrorColour, mirrorUv(gl_FragCoord.xy), 0.0).rgb;
 #endif
 #ifdef DISTANCE
     float way = textureLod(mirrorDistance, mirrorUv(gl_FragCoord.xy), 0.0).r;
     if (addDistance) distanceOut = way;
-    if (keepNearness) alpha = 1.0 / max(way * greatest(d), 1e-6);
+#ifdef NEARNESS
+    alpha = 1.0 / max(way * greatest(d), 1e-6);
+#endif
 #endif
 #else
     vec3 r = reflect(d, normalize(normal));
@@ -182,7 +184,19 @@ void main() {
     // Directions beyond the map's field of view take its border's colour.
     vec2 at = q.z < -1e-4 ? q.xy / -q.z * mapScale : normalize(q.xy + vec2(1e-9)) * 2.0;
     at *= min(1.0, 1.0 / max(length(at), 1e-9));
-    light = textureLod(map, clamp((0.5 + 0.5 * at) * mapPart.xy + mapPart.zw, mapLimits.xy, mapLimits.zw), 0.0).rgb;
+    vec2 uv = clamp((0.5 + 0.5 * at) * mapPart.xy + mapPart.zw, mapLimits.xy, mapLimits.zw);
+#ifdef ROUGH
+    // The spread about the reflected direction, at the place of the map that stands for it.
+    vec3 n = normalize(normal), along, across;
+    mirrorSpread(d, n, glossAngle, along, across);
+    vec3 v = vec3(at, -mapScale);
+    vec2 uvPerTangent = 0.5 * mapScale * mapPart.xy * blurredScale;
+    float unit = 1.0 / length(v);
+    light = mirrorGlossAt(uv * blurredScale, mapLimits * blurredScale.xyxy, mirrorMovement(v * unit, mapFromRelative * reflect(along, n), uvPerTangent),
+                          mirrorMovement(v * unit, mapFromRelative * reflect(across, n), uvPerTangent), blurLevels);
+#else
+    light = textureLod(map, uv, 0.0).rgb;
+#endif
 #else
     vec3 seen = r;
 #ifdef PARALLAX

@@ -1,4 +1,7 @@
 #version 450 core
+#ifdef LAYERED
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
 // Lit things, mirrors and curved reflectors of a small scene (app/render/MirrorWorldRenderer).
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -10,11 +13,11 @@ uniform vec4 glass;  // inside: dot(xyz, relative) + w >= 0
 uniform mat3 viewFromRelative;
 uniform float nearPlane;
 #endif
+#ifdef LAYERED
+uniform int layer;
+#endif
 invariant gl_Position;
-out gl_PerVertex {
-    vec4 gl_Position;
-    float gl_ClipDistance[2];
-};
+out float gl_ClipDistance[2];
 layout(location = 0) out vec3 relativeOut;
 layout(location = 1) out vec3 normalOut;
 layout(location = 2) out vec3 colourOut;
@@ -31,6 +34,9 @@ void main() {
 #else
     gl_ClipDistance[1] = 1.0;
     gl_Position = clipFromRelative * vec4(relative, 1.0);
+#endif
+#ifdef LAYERED
+    gl_Layer = layer;
 #endif
     relativeOut = relative;
     normalOut = normal;

@@ -39,13 +39,14 @@ void MirrorMaps::look(const ReflectionTree& tree) {
 }
 
 bool MirrorMaps::rough(const ReflectionNode& node) const {
-    return options_.gloss && node.planar() && node.roughness > 0 &&
-           node.view.projection == Projection::perspective;
+    return options_.gloss && node.roughness > 0 && node.view.projection == Projection::perspective;
 }
 
-/// Standard deviation, in texels.
+/// Standard deviation, in texels; a curved reflector's at its map's edge, where directions lie densest: its
+/// map is looked up at all angles, a planar one's spread is counted in the middle of the view.
 double MirrorMaps::widestBlur(const ReflectionNode& node) const {
-    return glossAngle(static_cast<double>(node.roughness)) * 0.5 *
+    const double edge = node.planar() ? 1 : 1 + 1 / (node.clipFromView[0][0] * node.clipFromView[0][0]);
+    return edge * glossAngle(static_cast<double>(node.roughness)) * 0.5 *
            std::max(node.clipFromView[0][0] * node.resolution.x, node.clipFromView[1][1] * node.resolution.y);
 }
 
@@ -89,10 +90,14 @@ void MirrorMaps::filter(const ReflectionTree& tree, std::span<const AtlasGroup::
     std::vector<MirrorBlur::Item> items;
     for (const AtlasGroup::Place& p : places)
         if (rough(tree.nodes[p.node]))
-            items.push_back({&tree.nodes[p.node], p.origin, widestBlur(tree.nodes[p.node])});
+            items.push_back({&tree.nodes[p.node], p.origin, widestBlur(tree.nodes[p.node]),
+                             glossAngle(static_cast<double>(tree.nodes[p.node].roughness))});
     if (items.empty()) return;
     blur_.blur(levels_[items.front().node->level], items);
     drawn.filtered += items.size();
+    std::erase_if(items, [](const MirrorBlur::Item& i) { return !i.node->planar(); });
+    if (options_.glossPerTexel && !items.empty())
+        blur_.gloss(items, options_.format == MirrorFormat::rgba8 ? GL_RGBA8 : GL_RGBA16F);
 }
 
 void MirrorMaps::apply(const ReflectionTree& tree, const ReflectionNode& node, MirrorScene& scene,
@@ -115,6 +120,7 @@ void MirrorMaps::apply(const ReflectionTree& tree, const ReflectionNode& node, M
     if (rough(node)) {
         map.blurLevels = MirrorBlur::levelsFor(widestBlur(node));
         map.blurred = blur_.pyramid().name();
+        if (options_.glossPerTexel && node.planar()) map.glossed = blur_.glossed().name();
         map.blurredScale = glm::vec2(level.size()) / glm::vec2(blur_.size());
     }
     bind(parent.target);

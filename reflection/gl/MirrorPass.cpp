@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,12 @@ struct MirrorPass::Impl {
     gl::Framebuffer spareTarget;
     int faceSize = 0;
     std::uint64_t faceTexels = 0;
+    /// The maps of a view that are made and not yet shown.
+    struct Made {
+        std::uint32_t root = 0;
+        std::vector<glm::ivec2> origins;  ///< of each node
+    };
+    std::optional<Made> made;
 
     /// Takes steps from `at` on while they belong into `image`; a node's own steps are taken inside it.
     std::size_t run(const ReflectionTree& tree, std::span<const ReflectionStep> steps, std::size_t at,
@@ -73,6 +80,14 @@ struct MirrorPass::Impl {
         }
     }
 
+    /// The one group of all reflections met in a view; none where they do not fit into one.
+    std::optional<AtlasGroup> oneGroup(const ReflectionTree& tree, const ReflectionChildren& children,
+                                       const std::vector<std::uint32_t>& tops) const {
+        std::vector<AtlasGroup> groups = atlasGroups(tree, children, tops, limits());
+        if (groups.size() != 1 || !groups.front().fits) return std::nullopt;
+        return std::move(groups.front());
+    }
+
     /// The reflections met in an image, with as few changes of target as their maps' size allows.
     void runTogether(const ReflectionTree& tree, const ReflectionChildren& children,
                      const std::vector<std::uint32_t>& tops, MirrorScene& scene, const MirrorImage& image) {
@@ -100,18 +115,24 @@ struct MirrorPass::Impl {
     }
 
     MirrorImage startFace(const ReflectionTree& tree, const ReflectionRoot& root, MirrorScene& scene) {
-        spareTarget.attachLayer(GL_COLOR_ATTACHMENT0, spare.name(), static_cast<int>(root.face));
         MirrorImage image;
+        if (layered())
+            image.target.layer = static_cast<int>(root.face);
+        else
+            spareTarget.attachLayer(GL_COLOR_ATTACHMENT0, spare.name(), static_cast<int>(root.face));
         image.target.framebuffer = spareTarget.name();
         image.target.viewport = image.target.scissor = {glm::ivec2(0), root.size};
         image.target.mirrored = root.view.mirrored();
         gl::bind(image.target);
-        clearDepth();
+        // Of all layers at once.
+        if (!layered() || root.face == 0) clearDepth();
         scene.drawFace(tree, root, image.target);
         ++counters.faces;
         faceTexels += static_cast<std::uint64_t>(image.target.scissor.area());
         return image;
     }
+
+    bool layered() const { return options.together && options.layered; }
 
     /// All faces of a reflector's map, their reflections together where these fit.
     void facesTogether(const ReflectionTree& tree, const ReflectionChildren& children,
@@ -119,10 +140,11 @@ struct MirrorPass::Impl {
         std::vector<std::uint32_t> tops;
         for (std::uint32_t r = job.firstRoot; r < job.firstRoot + job.rootCount; ++r)
             tops.insert(tops.end(), children.ofRoot[r].begin(), children.ofRoot[r].end());
-        const std::vector<AtlasGroup> groups = atlasGroups(tree, children, tops, limits());
-        const bool one = groups.empty() || (groups.size() == 1 && groups.front().fits);
+        const std::optional<AtlasGroup> group = oneGroup(tree, children, tops);
+        const bool one = group || tops.empty();
         std::vector<glm::ivec2> origins(tree.nodes.size(), glm::ivec2(0));
-        if (one && !groups.empty()) make(tree, children, groups.front(), scene, origins);
+        if (group) make(tree, children, *group, scene, origins);
+        if (layered()) spareTarget.attach(GL_COLOR_ATTACHMENT0, spare.name());
         for (std::uint32_t r = job.firstRoot; r < job.firstRoot + job.rootCount; ++r) {
             const MirrorImage image = startFace(tree, tree.roots[r], scene);
             if (!one) runTogether(tree, children, children.ofRoot[r], scene, image);
@@ -149,7 +171,10 @@ struct MirrorPass::Impl {
             faceSize = size;
             environments.clear();
             spare = gl::Texture();
-            spareDepth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, size, size);
+            const GLenum depth = GL_DEPTH_COMPONENT32F;
+            spareDepth = !layered() ? gl::Texture::image2D(depth, size, size)
+                         : cube     ? gl::Texture::cube(depth, size)
+                                    : gl::Texture::array2D(depth, size, size, 2);
             spareTarget = gl::Framebuffer::create();
             spareTarget.attach(GL_DEPTH_ATTACHMENT, spareDepth.name());
         }
@@ -174,7 +199,8 @@ struct MirrorPass::Impl {
         counters.environmentBytes = 0;
         for (const gl::Texture& t : environments)
             if (t) counters.environmentBytes += map;
-        counters.spareBytes = (spare ? map : 0) + (spareDepth ? face * 4 : 0);
+        const std::uint64_t depths = !layered() ? 1 : options.environments == CurvedMaps::cube ? 6 : 2;
+        counters.spareBytes = (spare ? map : 0) + (spareDepth ? depths * face * 4 : 0);
     }
 };
 
@@ -220,13 +246,29 @@ void MirrorPass::drawEnvironments(const ReflectionTree& tree, MirrorScene& scene
     my.count();
 }
 
+void MirrorPass::makeReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene) {
+    Impl& my = *impl_;
+    my.made.reset();
+    if (!my.options.together || root >= tree.roots.size()) return;
+    const ReflectionChildren children(tree);
+    const std::optional<AtlasGroup> group = my.oneGroup(tree, children, children.ofRoot[root]);
+    if (!group) return;
+    my.maps.look(tree);
+    my.made = Impl::Made{root, std::vector<glm::ivec2>(tree.nodes.size(), glm::ivec2(0))};
+    my.make(tree, children, *group, scene, my.made->origins);
+}
+
 void MirrorPass::drawReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene,
                                  const MirrorTarget& target) {
     Impl& my = *impl_;
     if (root >= tree.roots.size()) return;
     gl::MirrorImage image;
     image.target = target;
-    if (my.options.together) {
+    if (my.made && my.made->root == root && my.made->origins.size() == tree.nodes.size()) {
+        const ReflectionChildren children(tree);
+        for (const std::uint32_t top : children.ofRoot[root])
+            my.maps.apply(tree, tree.nodes[top], scene, my.made->origins[top], image);
+    } else if (my.options.together) {
         const ReflectionChildren children(tree);
         if (children.ofRoot[root].empty()) return;
         my.maps.look(tree);
@@ -237,6 +279,7 @@ void MirrorPass::drawReflections(const ReflectionTree& tree, std::uint32_t root,
         my.maps.look(tree);
         my.run(tree, steps, 0, scene, image);
     }
+    my.made.reset();
     gl::bind(target);
     my.count();
 }

@@ -18,10 +18,17 @@ struct MirrorPassOptions {
     MirrorFormat format = MirrorFormat::r11g11b10f;
     /// Rough mirrors are filtered; false: all mirrors are drawn as smooth ones, without distance or blur.
     bool gloss = true;
+    /// Rough mirrors are filtered once for each texel of their maps and then looked up like smooth ones
+    /// (MirrorMap::glossed), planar ones; false: for each of the pixels that they cover. Coarser where a map has fewer
+    /// texels.
+    bool glossPerTexel = false;
     /// Maps of a level side by side in one texture, the deepest level first (AtlasGroup): a change of target
     /// a level in place of two a map, for the memory of all maps of a frame. False: the paper's order.
     bool together = false;
     int largestAtlas = 4096;  ///< texels of that texture's side; what does not fit is drawn in turn
+    /// With `together`: all faces of an environment map in one framebuffer. The scene's vertex shaders write
+    /// MirrorTarget::layer to gl_Layer (GL_ARB_shader_viewport_layer_array); costs depth for all faces.
+    bool layered = false;
     /// Environment maps have an alpha channel of half floats in which the scene keeps 1 / depth (along the
     /// greatest axis; 0: infinitely far), and mirrors' maps have distances, so that a curved mirror can be
     /// looked up where a ray ends. False: the paper's, for which all lies infinitely far.
@@ -41,7 +48,7 @@ struct MirrorPassCounters {
     std::uint64_t texels = 0;            ///< inside scissors
     std::uint64_t mapBytes = 0;          ///< colour of the levels' maps, held now
     std::uint64_t depthBytes = 0;        ///< their depth and distance, held now
-    std::uint64_t blurBytes = 0;         ///< one pyramid for all levels, held now
+    std::uint64_t blurBytes = 0;         ///< one pyramid for all levels, and what is glossed; held now
     std::uint64_t environmentBytes = 0;  ///< complete environment maps, held now
     std::uint64_t spareBytes = 0;        ///< the one environment map that is being drawn, and its depth
 };
@@ -59,6 +66,11 @@ class MirrorPass {
     /// Environment maps of the tree's jobs; `curved`: number of curved reflectors, for which maps are kept. A
     /// map replaces its reflector's only when it is complete.
     void drawEnvironments(const ReflectionTree& tree, MirrorScene& scene, std::size_t curved);
+
+    /// With `together`, and where they fit: the maps of what is met in one view, before the view's own scene
+    /// is drawn, so that its image is not put aside for them; `drawReflections` of the same tree and root,
+    /// next, only shows them. Else without effect: it then draws them.
+    void makeReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene);
 
     /// The reflections met in one view, whose own scene is drawn already, with depth: `target` is its image
     /// and has the whole view in its viewport. Leaves the target bound.

@@ -15,6 +15,8 @@ struct MirrorTarget {
     PixelRect scissor;              ///< of the framebuffer
     bool withDistance = false;      ///< the target wants metres from the node's eye too, +infinity for sky
     bool mirrored = false;          ///< glFrontFace is already set so: GL_CW where true
+    int layer = none;  ///< to be written to gl_Layer, where not `none`: MirrorPassOptions::layered
+    static constexpr int none = -1;
 };
 
 /// A node's finished image as its mirrors' shader samples it.
@@ -24,6 +26,9 @@ struct MirrorMap {
     /// radiance, and in alpha the share of the way that lies behind the glass (see glossAngleSeen). 0: the
     /// mirrors are smooth. Sampled by `mirrorGloss` of data/shaders/mirror_map.glsl.
     std::uint32_t blurred = 0;
+    /// GL_TEXTURE_2D of `blurred`'s coordinates, linear filter: what the mirrors show, where their roughness
+    /// is the node's; 0: not made (MirrorPassOptions::glossPerTexel).
+    std::uint32_t glossed = 0;
     std::uint32_t distance = 0;  ///< GL_TEXTURE_2D R32F, metres from the node's eye; 0: the target wants none
     int blurLevels = 0;
     /// Of planar nodes: texture coordinates from gl_FragCoord in the parent's target, xy * scale + offset.

@@ -104,7 +104,7 @@ struct ReflectionNode {
     PixelRect scissor;         ///< of them, those worth drawing
     NdcRect bounds;            ///< of the mirrors in the parent's image; whole for curved
     double pixels = 0;    ///< that its mirrors cover in the caller's view, before occlusion: an upper bound
-    float roughness = 0;  ///< its mirrors' largest
+    float roughness = 0;  ///< its mirrors' largest, or its curved reflector's
     glm::vec3 throughput{1};    ///< product of reflectances on the way to the eye, its own included
     std::uint32_t coarser = 0;  ///< levels of detail below the view's
     std::uint32_t firstObject = 0, objectCount = 0;  ///< see ReflectionTree::objectsOf

@@ -43,6 +43,7 @@ class TreeBuilder {
         std::uint32_t hiddenCurved = ReflectionNode::none;
         glm::ivec2 grid{0};  ///< texels of a mirror view's whole image
         std::uint32_t coarser = 0;
+        bool inCurved = false;  ///< a curved reflector's map, or seen through one
     };
 
     /// A mirror as an image shows it; several, where they share a view.
