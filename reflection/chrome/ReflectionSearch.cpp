@@ -1,0 +1,216 @@
+// Compiled once for every instruction set that Highway knows on this architecture; the best is chosen at run
+// time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "reflection/chrome/ReflectionSearch.cpp"
+#include <hwy/foreach_target.h>
+
+#include "reflection/chrome/ReflectionSearch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "reflection/chrome/SearchLanes-inl.h"
+#include "reflection/chrome/SearchStart-inl.h"
+#include "reflection/chrome/ThoroughSearch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace reflection {
+namespace HWY_NAMESPACE {
+
+/// Most lanes of doubles that any instruction set here has.
+constexpr std::size_t mostLanes = 64 / sizeof(double);  // 512 bits
+
+/// A vector of points, filled and read one by one.
+struct Points {
+    HWY_ALIGN std::array<double, mostLanes> x{}, y{}, z{};
+
+    void set(std::size_t lane, const glm::dvec3& p) { x[lane] = p.x, y[lane] = p.y, z[lane] = p.z; }
+    glm::dvec3 get(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+    HWY_INLINE Num3 load() const {
+        const Doubles d;
+        return {{hn::Load(d, x.data())}, {hn::Load(d, y.data())}, {hn::Load(d, z.data())}};
+    }
+    HWY_INLINE void store(const Num3& p) {
+        const Doubles d;
+        hn::Store(p.x.v, d, x.data());
+        hn::Store(p.y.v, d, y.data());
+        hn::Store(p.z.v, d, z.data());
+    }
+};
+
+struct Values {
+    HWY_ALIGN std::array<double, mostLanes> at{};
+    HWY_INLINE void store(Num n) { hn::Store(n.v, Doubles(), at.data()); }
+};
+
+/// Convex pieces. What has no answer here comes back outOfSteps. Everything in the map's frame and units.
+void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<const glm::dvec3> vertices,
+                   std::span<ReflectionPoint> points, const SearchOptions& options) {
+    const Doubles tag;
+    const std::size_t lanes = hn::Lanes(tag);
+    const EyeSide eyeSide(map, eye);
+    const Num3 eyes = num3(eye);
+    const Stretch stretch(map);
+    for (std::size_t first = 0; first < vertices.size(); first += lanes) {
+        const std::size_t n = std::min(lanes, vertices.size() - first);
+        Points vertex;
+        for (std::size_t k = 0; k < lanes; ++k) vertex.set(k, vertices[first + std::min(k, n - 1)]);
+        const Num3 v = vertex.load();
+        const MD all = num(0) < num(1);
+        const Entry entry = enter(map, stretch.takeOut(eyes), stretch.takeOut(v), all);
+        const MD visible = hn::Not(entry.enters);
+        const Num3 start = startFor(map, eyeSide, v);
+        Judged judged = judge(map, eyes, v, start, true);
+        const MD poor = hn::And(visible, judged.error > num(poorStart));
+        if (!hn::AllFalse(tag, poor)) {
+            const Judged deepest = judge(map, eyes, v, stretch.takeOut(eyes + entry.at * (v - eyes)), true);
+            judged = choose(deepest.error < judged.error, deepest, judged);
+        }
+        const Descent descent = descend(map, eyes, v, judged, visible, options, true);
+
+        Num3 point = descent.best.point, normal = descent.best.normal;
+        if (!hn::AllFalse(tag, entry.enters)) {
+            const Num3 met = eyes + entry.at * (v - eyes);
+            const OnCube at = onCube(stretch.takeOut(met));
+            const Num3 m = stretch.normals(at.axes.out(surfaceAt(map, at).m));
+            point = choose(entry.enters, met, point);
+            normal = choose(entry.enters, (num(1) / root(dot(m, m))) * m, normal);
+        }
+        const Num3 toEye = eyes - point, toVertex = v - point;
+        Points at, up;
+        Values path, error, lookups, hidden;
+        at.store(point);
+        up.store(normal);
+        path.store(root(dot(toEye, toEye)) + root(dot(toVertex, toVertex)));
+        error.store(descent.best.error);
+        lookups.store(descent.lookups);
+        hidden.store(choose(entry.enters, num(1), num(0)));
+        for (std::size_t k = 0; k < n; ++k) {
+            ReflectionPoint& r = points[first + k];
+            r.point = at.get(k);
+            r.normal = up.get(k);
+            r.path = path.at[k];
+            r.lookups = static_cast<std::uint8_t>(lookups.at[k]);
+            if (hidden.at[k] > 0) {
+                r.residual = 0;
+                r.status = ReflectionStatus::hidden;
+                continue;
+            }
+            r.residual = error.at[k] <= 1 ? std::asin(std::sqrt(error.at[k])) : 3.14159265358979;
+            r.status = r.residual > options.tolerance ? ReflectionStatus::outOfSteps
+                       : map.covered(r.point)         ? ReflectionStatus::found
+                                                      : ReflectionStatus::unreflected;
+        }
+    }
+}
+
+void descendFrom(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,
+                 std::span<const glm::dvec3> starts, std::span<Candidate> found,
+                 const SearchOptions& options) {
+    const Doubles tag;
+    const std::size_t lanes = hn::Lanes(tag);
+    for (std::size_t first = 0; first < starts.size(); first += lanes) {
+        const std::size_t n = std::min(lanes, starts.size() - first);
+        Points start, point, normal;
+        Values error;
+        for (std::size_t k = 0; k < lanes; ++k) start.set(k, starts[first + std::min(k, n - 1)]);
+        const Descent descent =
+            descend(map, num3(eye), num3(vertex), judge(map, num3(eye), num3(vertex), start.load(), false),
+                    num(0) < num(1), options, false);
+        point.store(descent.best.point);
+        normal.store(descent.best.normal);
+        error.store(descent.best.error);
+        for (std::size_t k = 0; k < n; ++k) found[first + k] = {point.get(k), normal.get(k), error.at[k]};
+    }
+}
+
+bool entryOf(const ReflectorMap& map, const glm::dvec3& from, const glm::dvec3& to, glm::dvec3& point) {
+    const Stretch stretch(map);
+    const Entry entry = enter(map, stretch.takeOut(num3(from)), stretch.takeOut(num3(to)), num(0) < num(1));
+    Values at, enters;
+    at.store(entry.at);
+    enters.store(choose(entry.enters, num(1), num(0)));
+    point = from + at.at[0] * (to - from);
+    return enters.at[0] > 0;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace reflection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace reflection {
+
+HWY_EXPORT(searchPackets);
+HWY_EXPORT(descendFrom);
+HWY_EXPORT(entryOf);
+
+void descendFromStarts(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,
+                       std::span<const glm::dvec3> starts, std::span<Candidate> found,
+                       const SearchOptions& options) {
+    HWY_DYNAMIC_DISPATCH(descendFrom)(map, eye, vertex, starts, found, options);
+}
+
+bool entersSurface(const ReflectorMap& map, const glm::dvec3& from, const glm::dvec3& to, glm::dvec3& point) {
+    return HWY_DYNAMIC_DISPATCH(entryOf)(map, from, to, point);
+}
+
+namespace {
+
+bool finite(const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// So many vertices are brought to the map's frame at a time.
+constexpr std::size_t block = 256;
+
+}  // namespace
+
+void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
+                          std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
+                          const SearchOptions& options) {
+    if (map.empty() || !finite(eye)) {
+        std::fill_n(points.begin(), vertices.size(), ReflectionPoint{});
+        return;
+    }
+    const glm::dvec3 mapEye = map.frame().toMap(eye);
+    const bool convex = map.bend() == Bend::convex;
+    // From inside nothing is reflected: the eye sees the surface's back.
+    const bool inside = convex && !(map.sample(mapEye).gauge > 1);
+    std::array<glm::dvec3, block> moved;
+    for (std::size_t first = 0; first < vertices.size(); first += block) {
+        const std::size_t n = std::min(block, vertices.size() - first);
+        const std::span<ReflectionPoint> out = points.subspan(first, n);
+        for (std::size_t k = 0; k < n; ++k) {
+            const glm::dvec3& v = vertices[first + k];
+            moved[k] = finite(v) ? map.frame().toMap(v) : mapEye;
+        }
+        if (convex && !inside)
+            HWY_DYNAMIC_DISPATCH(searchPackets)(map, mapEye, std::span(moved).first(n), out, options);
+        for (std::size_t k = 0; k < n; ++k) {
+            ReflectionPoint& r = out[k];
+            if (!finite(vertices[first + k])) {
+                r = {};
+                continue;
+            }
+            if (inside) {
+                const ReflectorMap::Sample under = map.sample(mapEye);
+                r = {under.position,
+                     under.normal,
+                     0,
+                     glm::length(moved[k] - mapEye),
+                     ReflectionStatus::unreflected,
+                     1};
+            } else if (!convex || r.status == ReflectionStatus::outOfSteps) {
+                r = searchThoroughly(map, mapEye, moved[k], options);
+            }
+            r.point = map.frame().fromMap(r.point);
+            r.normal = map.frame().fromMapDirection(r.normal);
+            r.path *= map.frame().scale;
+        }
+    }
+}
+
+}  // namespace reflection
+#endif

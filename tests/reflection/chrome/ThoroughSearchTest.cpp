@@ -1,0 +1,128 @@
+#include "reflection/chrome/ThoroughSearch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "Shapes.h"
+#include "reflection/chrome/BuildReflectorMap.h"
+
+namespace reflection {
+namespace {
+
+constexpr double rim = 2.0;  ///< the bowl covers polar angles from here to pi
+
+/// All points of a unit sphere's inside that reflect the vertex lie in the plane of eye, vertex and centre:
+/// sign changes of the difference of the angles along the circle there, refined by bisection.
+std::vector<glm::dvec3> circleSolutions(const glm::dvec3& eye, const glm::dvec3& vertex) {
+    const glm::dvec3 a = glm::normalize(eye);
+    const glm::dvec3 b = glm::normalize(vertex - glm::dot(vertex, a) * a);
+    const auto at = [&](double turn) { return std::cos(turn) * a + std::sin(turn) * b; };
+    const auto sine = [&](double turn) {
+        const glm::dvec3 p = at(turn);
+        const glm::dvec3 along = -std::sin(turn) * a + std::cos(turn) * b;
+        return glm::dot(glm::normalize(eye - p) + glm::normalize(vertex - p), along);
+    };
+    std::vector<glm::dvec3> found;
+    constexpr int n = 20000;
+    for (int k = 0; k < n; ++k) {
+        double low = glm::two_pi<double>() * k / n, high = glm::two_pi<double>() * (k + 1) / n;
+        const double atLow = sine(low);
+        if (atLow * sine(high) > 0) continue;
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (low + high);
+            (sine(middle) * atLow > 0 ? low : high) = middle;
+        }
+        found.push_back(at(low));
+    }
+    return found;
+}
+
+TEST(ThoroughSearch, FindsAllPointsOfABowl) {
+    const BuiltReflectorMap built = buildReflectorMap(
+        meshOf(ellipsoid({1, 1, 1}), 300, rim, glm::pi<double>(), true), {0, 0, 0}, Bend::concave);
+    ASSERT_EQ(built.status, ReflectorMapStatus::built);
+    Scatter random(1);
+    std::array<int, 5> times{};
+    for (int k = 0; k < 600; ++k) {
+        const glm::dvec3 eye = random.direction() * random.between(0.1, 0.9);
+        const glm::dvec3 vertex = random.direction() * random.between(0.1, 0.9);
+        std::vector<glm::dvec3> truth = circleSolutions(eye, vertex);
+        bool doubtful = false;
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            doubtful = doubtful || std::abs(std::acos(truth[i].z) - rim) < 0.05;
+            for (std::size_t j = 0; j < i; ++j)
+                doubtful = doubtful || glm::length(truth[i] - truth[j]) < 0.15;
+        }
+        if (doubtful) continue;  // on the rim, or two about to become one
+        std::erase_if(truth, [](const glm::dvec3& p) { return std::acos(p.z) < rim; });
+        const std::vector<ReflectionPoint> found = findAllReflectionPoints(built.map, eye, vertex);
+        ASSERT_EQ(found.size(), truth.size()) << k;
+        ++times[truth.size()];
+        for (const glm::dvec3& t : truth) {
+            double nearest = 10;
+            for (const ReflectionPoint& r : found) nearest = std::min(nearest, glm::length(r.point - t));
+            EXPECT_LT(nearest, 2e-4);
+        }
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_LT(bisectorAngle(eye, vertex, found[i].point, found[i].normal), 1e-6);
+            if (i > 0) {
+                EXPECT_GE(found[i].path, found[i - 1].path);
+            }
+        }
+    }
+    EXPECT_GT(times[0], 20);
+    EXPECT_GT(times[1], 50);
+    EXPECT_GT(times[2] + times[3], 10);
+}
+
+TEST(ThoroughSearch, GivesOneStatusToEveryVertexAroundABowl) {
+    const BuiltReflectorMap built = buildReflectorMap(
+        meshOf(ellipsoid({1, 1, 1}), 100, rim, glm::pi<double>(), true), {0, 0, 0}, Bend::concave);
+    Scatter random(2);
+    const glm::dvec3 eye(.2, -.4, 2);
+    std::vector<glm::dvec3> vertices(1500);
+    for (glm::dvec3& v : vertices) v = random.direction() * random.between(0, 3);
+    std::vector<ReflectionPoint> points(vertices.size());
+    findReflectionPoints(built.map, eye, vertices, points);
+    int found = 0, hidden = 0, unreflected = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const ReflectionPoint& r = points[k];
+        if (r.status == ReflectionStatus::found) {
+            ++found;
+            EXPECT_LT(r.residual, 1e-6);
+        } else if (r.status == ReflectionStatus::hidden) {
+            ++hidden;
+            // Behind the bowl, on a line of sight through it.
+            EXPECT_GT(glm::length(vertices[k]), 0.99);
+            EXPECT_GT(std::acos(glm::normalize(r.point).z), rim - 0.05);
+            EXPECT_LT(glm::length(r.point - eye), glm::length(vertices[k] - eye));
+        } else if (r.status == ReflectionStatus::unreflected) {
+            ++unreflected;
+        }
+    }
+    EXPECT_EQ(found + hidden + unreflected, static_cast<int>(points.size()));
+    EXPECT_GT(found, 50);
+    EXPECT_GT(hidden, 50);
+    EXPECT_GT(unreflected, 50);
+}
+
+TEST(ThoroughSearch, AgreesWithTheQuickOneOnConvexPieces) {
+    const BuiltReflectorMap built =
+        buildReflectorMap(meshOf(ellipsoid({1, .7, .5}), 100), {0, 0, 0}, Bend::convex);
+    Scatter random(3);
+    const glm::dvec3 eye(1, -2, .5);
+    std::vector<glm::dvec3> vertices(400);
+    for (glm::dvec3& v : vertices) v = random.direction() * random.between(1.1, 4);
+    std::vector<ReflectionPoint> points(vertices.size());
+    findReflectionPoints(built.map, eye, vertices, points);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const std::vector<ReflectionPoint> all = findAllReflectionPoints(built.map, eye, vertices[k]);
+        if (points[k].status != ReflectionStatus::found) continue;
+        ASSERT_EQ(all.size(), 1U) << k;
+        EXPECT_LT(glm::length(all[0].point - points[k].point), 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace reflection
