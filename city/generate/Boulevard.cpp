@@ -13,6 +13,7 @@
 #include "city/generate/OpenSpaces.h"
 #include "city/generate/Random.h"
 #include "city/generate/SignalHeads.h"
+#include "city/generate/SquareMirrors.h"
 #include "city/generate/StreetFurnishing.h"
 #include "city/generate/TourPath.h"
 #include "city/roads/BuildRoadNetwork.h"
@@ -122,9 +123,10 @@ CityModel generateBoulevard(const BoulevardOptions& options) {
     }
     const Random seed(options.seed);
     Random planRandom = seed.fork(1), prototypes = seed.fork(2), streets = seed.fork(3), edges = seed.fork(4),
-           hills = seed.fork(5);
+           hills = seed.fork(5), mirrors = seed.fork(6);
     const BoulevardPlan plan = planBoulevard(options.size, planRandom);
     Palette palette = makePalette();
+    addStoneShops(palette);
     CityModel model;
     model.name = "boulevard";
     const Standing standing = addPrototypes(palette, prototypes, model);
@@ -158,6 +160,11 @@ CityModel generateBoulevard(const BoulevardOptions& options) {
         place(model, standing.signalPole, pole.foot, glm::vec2(pole.facing));
     model.signalHeads = std::move(signals.heads);
 
+    model.tour = boulevardTour(plan);
+    for (const BoulevardPlan::Block& block : plan.blocks)
+        if (block.use == BlockUse::square)
+            addSquareMirrors(block.boundary, model.tour, palette, mirrors, model, chunks);
+
     model.chunks = chunks.take();
     // The border bounds the city; the hills beyond are scenery.
     for (const Chunk& chunk : model.chunks) model.bounds.extend(chunk.bounds);
@@ -166,7 +173,6 @@ CityModel generateBoulevard(const BoulevardOptions& options) {
     }
     addSurroundings(plan.half, palette, hills, model.chunks);
     model.materials = std::move(palette.materials);
-    model.tour = boulevardTour(plan);
     return model;
 }
 

@@ -107,4 +107,15 @@ Palette makePalette() {
     return p;
 }
 
+void addStoneShops(Palette& palette) {
+    for (const glm::vec3& tint : {glm::vec3(0.66f, 0.66f, 0.65f), glm::vec3(0.58f, 0.6f, 0.63f)}) {
+        Material m;
+        m.pattern = Pattern::stoneFront;
+        m.tint = tint;
+        m.patternSize = 4;
+        palette.materials.push_back(m);
+        palette.stoneShops.push_back(static_cast<std::uint32_t>(palette.materials.size() - 1));
+    }
+}
+
 }  // namespace city

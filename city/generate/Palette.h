@@ -33,6 +33,7 @@ struct Palette {
     std::vector<FacadeStyle> facades;  ///< old styles first: plaster, brick, stone
     std::size_t firstGlassFacade = 0;  ///< facades from here on are modern
     std::vector<std::uint32_t> shops;
+    std::vector<std::uint32_t> stoneShops;  ///< some shops are of these instead; may be empty
     std::vector<std::uint32_t> awnings;
     std::vector<std::uint32_t> signs;
 
@@ -44,5 +45,8 @@ struct Palette {
 
 /// The palette of built-in cities; always the same.
 Palette makePalette();
+
+/// Adds shop fronts with polished stone and frosted glass.
+void addStoneShops(Palette& palette);
 
 }  // namespace city

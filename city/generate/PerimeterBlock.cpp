@@ -13,6 +13,8 @@ namespace {
 
 constexpr float smallestCourt = 7;    // metres across; below it a court would be a shaft
 constexpr float shallowestHouse = 6;  // metres
+constexpr double stoneShare = 0.2;    // of shops with polished stone and frosted glass
+constexpr std::uint64_t stoneFronts = 0x570e;
 
 float cross(glm::vec2 a, glm::vec2 b) {
     return a.x * b.y - a.y * b.x;
@@ -66,6 +68,11 @@ HouseDesign drawHouse(const BlockSide& side, double glass, const Palette& palett
     d.bayWidth = modern ? 3.0f : random.range(2.6f, 3.2f);
     d.shops = random.chance(side.shops);
     d.shop = palette.shops[random.index(palette.shops.size())];
+    if (!palette.stoneShops.empty()) {
+        // A stream of its own: all else stays as it is without them.
+        Random stone = random.fork(stoneFronts);
+        if (stone.chance(stoneShare)) d.shop = palette.stoneShops[stone.index(palette.stoneShops.size())];
+    }
     d.awnings = d.shops && random.chance(0.65);
     d.roofMaterial = palette.roofTiles[random.index(palette.roofTiles.size())];
     const double roof = random.uniform();

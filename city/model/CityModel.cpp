@@ -67,6 +67,12 @@ std::uint64_t CityModel::contentHash() const {
         hash.add(static_cast<std::uint64_t>(placement.prototype));
         for (int column = 0; column < 4; ++column) hash.add(glm::vec3(placement.worldFromPrototype[column]));
     }
+    for (const StandingReflector& reflector : reflectors) {
+        hash.add(static_cast<std::uint64_t>(reflector.shape));
+        hash.add(reflector.foot);
+        hash.add(reflector.radius);
+        hash.add(reflector.height);
+    }
     return hash.value();
 }
 

@@ -11,6 +11,7 @@
 #include "city/geometry/Aabb.h"
 #include "city/geometry/Mesh.h"
 #include "city/model/Material.h"
+#include "city/model/StandingReflector.h"
 #include "city/roads/RoadNetwork.h"
 
 namespace city {
@@ -67,6 +68,7 @@ struct CityModel {
     std::vector<Chunk> chunks;
     std::vector<Prototype> prototypes;
     std::vector<Placement> placements;
+    std::vector<StandingReflector> reflectors;  ///< mirrors that stand in it
     RoadNetwork roads;
     std::vector<SignalHead> signalHeads;
     std::vector<TourStop> tour;       ///< may be empty: the program then plans one along the lanes
@@ -74,7 +76,8 @@ struct CityModel {
     std::vector<std::string> notes;   ///< what an importer dropped or guessed, one sentence with a count each
 
     std::size_t triangleCount() const;  ///< all placements at their finest level
-    /// 64-bit hash over everything that can be seen in a reference map: equal content, equal hash, on every
+    /// 64-bit hash over everything that can be seen in a reference map (of standing reflectors their
+    /// shadows): equal content, equal hash, on every
     /// machine.
     std::uint64_t contentHash() const;
 };

@@ -29,6 +29,7 @@ enum class Pattern : std::uint8_t {
     metal,
     marking,
     rail,
+    stoneFront,  ///< a shop front on a base of polished granite, its panes partly frosted
     count
 };
 

@@ -1,3 +1,5 @@
+#include <glm/common.hpp>
+
 #include "city/model/PatternCanvas.h"
 #include "city/model/PatternPainters.h"
 
@@ -167,6 +169,61 @@ PatternImage paintShopFront() {
     canvas.box({0.885f, 0.3f}, {0.897f, 0.42f}, glm::vec3(0.5f, 0.47f, 0.4f));
     canvas.shade({0.05f, 0.735f}, {0.93f, 0.78f}, 1.0f, 0.6f);
     canvas.box({0, 0.8f}, {1, 0.815f}, glm::vec3(0.7f));
+    return canvas.image();
+}
+
+PatternImage paintStoneFront() {
+    PatternCanvas canvas(facadeSize);
+    canvas.fill(glm::vec3(0.86f));
+    canvas.grain(6, 4, 0.02f, 16);
+    // Black granite below, a joint every half bay; it goes round the door.
+    const glm::vec2 stoneHigh(1, 0.155f);
+    canvas.box({0, 0}, stoneHigh, glm::vec3(0.17f, 0.172f, 0.178f));
+    // A lintel of the same, behind the string course: the picture's ends meet.
+    canvas.box({0, 0.965f}, {1, 1}, glm::vec3(0.17f, 0.172f, 0.178f));
+    canvas.grain({0, 0}, stoneHigh, 48, 3, 0.45f, 17);
+    for (const float u : {0.0f, 0.33f})
+        canvas.box({u - 0.002f, 0}, {u + 0.002f, stoneHigh.y}, glm::vec3(0.1f));
+    canvas.box({0.05f, 0.16f}, {0.62f, 0.78f}, glm::vec3(0.42f));
+    const auto clear = [&](glm::vec2 low, glm::vec2 high) {
+        canvas.box(low, high, {0.2f, 0.2f, 0.2f}, {0.33f, 0.38f, 0.44f});
+    };
+    clear({0.065f, 0.175f}, {0.335f, 0.765f});
+    clear({0.35f, 0.175f}, {0.605f, 0.765f});
+    // A ceiling's lamps and the backs of tall shelves are what the clear part shows.
+    for (std::uint32_t k = 0; k < 14; ++k) {
+        const float u = 0.085f + 0.036f * static_cast<float>(k);
+        if (u > 0.3f && u < 0.37f) continue;
+        const float height = 0.03f + 0.07f * latticeValue(k, 0, 43);
+        const glm::vec3 goods(0.3f + 0.4f * latticeValue(k, 1, 43), 0.3f + 0.3f * latticeValue(k, 2, 43),
+                              0.28f + 0.3f * latticeValue(k, 3, 43));
+        canvas.box({u, 0.43f}, {u + 0.026f, 0.43f + height}, 0.75f * goods, goods);
+    }
+    for (const float u : {0.13f, 0.26f, 0.42f, 0.54f})
+        canvas.spot({u, 0.7f}, {0.014f, 0.018f}, {0.95f, 0.9f, 0.75f});
+    // Frosted below eye level: milky, with what stands close behind it as soft stains.
+    const auto frosted = [&](glm::vec2 low, glm::vec2 high, std::uint32_t seed) {
+        canvas.box(low, high, {0.56f, 0.58f, 0.59f}, {0.66f, 0.68f, 0.69f});
+        for (std::uint32_t k = 0; k < 5; ++k) {
+            const glm::vec2 size = high - low;
+            const glm::vec2 at = low + size * glm::vec2(0.2f + 0.6f * latticeValue(k, 0, seed),
+                                                        0.22f + 0.45f * latticeValue(k, 1, seed));
+            const glm::vec3 stain(0.42f + 0.2f * latticeValue(k, 2, seed),
+                                  0.44f + 0.14f * latticeValue(k, 3, seed),
+                                  0.44f + 0.14f * latticeValue(k, 4, seed));
+            // Rings of falling opacity: no edge anywhere.
+            for (const float r : {1.0f, 0.85f, 0.7f, 0.55f, 0.4f, 0.25f})
+                canvas.spot(at, r * glm::min(glm::vec2(0.06f), 0.2f * size), stain, 0.16f);
+        }
+    };
+    frosted({0.065f, 0.175f}, {0.335f, 0.43f}, 44);
+    frosted({0.35f, 0.175f}, {0.605f, 0.43f}, 45);
+    canvas.box({0.67f, 0.0f}, {0.93f, 0.78f}, glm::vec3(0.46f));
+    frosted({0.7f, 0.13f}, {0.9f, 0.6f}, 46);
+    clear({0.7f, 0.63f}, {0.9f, 0.76f});
+    canvas.box({0.88f, 0.25f}, {0.892f, 0.48f}, glm::vec3(0.62f, 0.6f, 0.56f));
+    canvas.shade({0.05f, 0.735f}, {0.93f, 0.78f}, 1.0f, 0.6f);
+    canvas.box({0, 0.8f}, {1, 0.815f}, glm::vec3(0.5f));
     return canvas.image();
 }
 

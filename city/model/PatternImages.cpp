@@ -29,6 +29,7 @@ std::array<PatternImage, static_cast<std::size_t>(Pattern::count)> paintPatterns
     put(Pattern::metal, paintMetal());
     put(Pattern::marking, paintMarking());
     put(Pattern::rail, paintRail());
+    put(Pattern::stoneFront, paintStoneFront());
     return images;
 }
 

@@ -11,6 +11,7 @@ PatternImage paintBrickFacade();
 PatternImage paintStoneFacade();
 PatternImage paintGlassFacade();
 PatternImage paintShopFront();
+PatternImage paintStoneFront();
 
 // What one walks and drives on, and roofs.
 PatternImage paintAsphalt();
