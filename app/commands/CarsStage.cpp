@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <iterator>
 #include <map>
 
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/StandingReflectors.h"
 
 namespace app {
 
@@ -47,7 +49,8 @@ CarsStage setCarsStage(const Scene& scene, SceneRenderer& renderer, std::uint32_
             vehicles::Traffic simulation(scene.city.roads, scene.kinds, traffic);
             for (int step = 0; step < 120; ++step) simulation.step();
             renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}));
-            const std::size_t visible = renderer.visibleVehicles(view).size();
+            std::size_t visible = 0;
+            for (const auto& v : renderer.visibleVehicles(view)) visible += v.index < simulation.size();
             const bool full = simulation.size() < wanted;
             if (visible > best.visible) {
                 best.view = view;
@@ -75,6 +78,7 @@ std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, std::span<const V
 void Cast::select(FrameScene& scene, const View& view, SceneRenderer& renderer) {
     renderer.prepare(scene);
     std::vector<SeenVehicle> seen = seenIn(renderer, std::span(&view, 1));
+    std::erase_if(seen, [&](const SeenVehicle& v) { return stands(scene.vehicles[v.index]); });
     std::stable_sort(seen.begin(), seen.end(), [&](const SeenVehicle& a, const SeenVehicle& b) {
         const bool keptA = kept_.contains(scene.vehicles[a.index].id),
                    keptB = kept_.contains(scene.vehicles[b.index].id);
@@ -87,6 +91,7 @@ void Cast::select(FrameScene& scene, const View& view, SceneRenderer& renderer) 
         kept_.insert(scene.vehicles[v.index].id);
         stay.push_back(scene.vehicles[v.index]);
     }
+    std::ranges::copy_if(scene.vehicles, std::back_inserter(stay), stands);
     scene.vehicles = std::move(stay);
 }
 

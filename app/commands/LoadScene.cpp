@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "app/frame/StandingReflectors.h"
 #include "app/report/Timing.h"
 #include "city/generate/Boulevard.h"
 #include "city/generate/PaperCity.h"
@@ -72,6 +73,7 @@ Scene loadScene(const Options& options) {
         scene.models = std::move(models);
         scene.kinds = vehicles::kindsOf(scene.models);
     }
+    for (vehicles::VehicleModel& model : standingModels(scene.city)) scene.models.push_back(std::move(model));
     const double latitude = scene.city.frame ? scene.city.frame->latitude() : 50;
     scene.lighting = lightingAt(options.hour, latitude);
     return scene;

@@ -15,8 +15,9 @@ namespace app {
 struct Scene {
     city::CityModel city;
     city::GlassFronts glass;  ///< the city's windows that mirror
+    /// The traffic's, then one for each of the city's standing reflectors.
     std::vector<vehicles::VehicleModel> models;
-    std::vector<vehicles::VehicleKind> kinds;  ///< kinds[i] speaks of models[i]
+    std::vector<vehicles::VehicleKind> kinds;  ///< of the traffic: kinds[i] speaks of models[i]
     Lighting lighting;
 };
 

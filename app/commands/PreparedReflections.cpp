@@ -22,7 +22,8 @@ namespace app {
 
 namespace {
 
-/// Changes when the drawing or the placement of reference maps changes, so that old caches are not taken for new ones.
+/// Changes when the drawing or the placement of reference maps changes, so that old caches are not taken for
+/// new ones.
 constexpr std::uint64_t bakeVersion = 2;
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
@@ -51,6 +52,7 @@ std::uint64_t contentHash(const city::CityModel& city, const Lighting& light,
     hash = mix(mix(hash, static_cast<std::uint64_t>(options.faceSize)),
                static_cast<std::uint64_t>(options.supersampling));
     hash = mix(mix(mix(hash, options.cell), options.placement.coverage), options.placement.spacing);
+    for (const city::StandingReflector& reflector : city.reflectors) hash = mix(hash, reflector.centre());
     return hash;
 }
 
@@ -148,6 +150,9 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
             reflection::placeReferenceMaps(*prepared.tracer, drivingPositions(city, 2), options.placement);
         plan.emplace();
         plan->positions.assign(placed.positions.begin(), placed.positions.end());
+        // What stands mirrors the same surroundings for ever: a map from its own place has them at hand.
+        for (const city::StandingReflector& reflector : city.reflectors)
+            plan->positions.emplace_back(reflector.centre());
         plan->coverage = placed.coverage;
         try {
             if (useCache) store.savePlan(*plan);

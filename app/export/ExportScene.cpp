@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<const char*, static_cast<std::size_t>(city::Pattern::count)> patternNames{
     "plain",     "asphalt",  "pavement",      "cobbles",     "grass",       "soil",        "water",
     "roofTiles", "roofFlat", "facadePlaster", "facadeBrick", "facadeStone", "facadeGlass", "wall",
-    "shopFront", "bark",     "foliage",       "metal",       "marking",     "rail"};
+    "shopFront", "bark",     "foliage",       "metal",       "marking",     "rail",        "stoneFront"};
 
 std::array<double, 3> gltfPoint(const glm::dvec3& v) {
     return {v.x, v.z, -v.y};
@@ -52,6 +52,8 @@ GltfMaterial surfaceMaterial(vehicles::Surface surface) {
             return {.name = "tailLamp", .baseColour = {0.4f, 0.01f, 0.01f}, .roughness = 0.15f};
         case Surface::trim:
             return {.name = "trim", .baseColour = glm::vec3(0.03f), .roughness = 0.7f};
+        case Surface::polishedStone:
+            return {.name = "polishedStone", .baseColour = glm::vec3(0.014f), .roughness = 0.04f};
         case Surface::interior:
         case Surface::count:
             break;
@@ -104,6 +106,16 @@ void exportCity(const city::CityModel& city, const std::filesystem::path& file) 
         if (mesh >= 0)
             builder.addNode(city.prototypes[placement.prototype].name, mesh,
                             gltfFromWorldTransform(placement.worldFromPrototype));
+    }
+    for (const city::StandingReflector& reflector : city.reflectors) {
+        const bool granite = reflector.stuff == city::StandingReflector::Stuff::granite;
+        const int material = builder.addMaterial(
+            surfaceMaterial(granite ? vehicles::Surface::polishedStone : vehicles::Surface::chrome));
+        const int mesh = builder.addMesh(reflector.name, city::reflectorMesh(reflector, 4), gltfFromWorld,
+                                         [material](std::uint32_t) { return material; });
+        if (mesh >= 0)
+            builder.addNode(reflector.name, mesh,
+                            glm::translate(glm::mat4(1), gltfFromWorld(reflector.foot)));
     }
     builder.write(file);
 }

@@ -12,7 +12,7 @@
 namespace app {
 
 /// Writes the static city as binary glTF at its finest level: a mesh for each chunk, one for each prototype,
-/// a node for each placement; patterns embedded as PNG. Axes: x east, y up, -z north. Throws
+/// a node for each placement, one for each standing reflector; patterns embedded as PNG. Axes: x east, y up, -z north. Throws
 /// std::runtime_error naming the file and the cause.
 void exportCity(const city::CityModel& city, const std::filesystem::path& file);
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "app/frame/StandingReflectors.h"
+
 namespace app {
 
 FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& traffic,
@@ -10,6 +12,9 @@ FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& t
     scene.time = traffic.time();
     scene.views = std::move(views);
     scene.vehicles.assign(traffic.poses().begin(), traffic.poses().end());
+    const std::vector<vehicles::VehiclePose> standing =
+        standingPoses(city, static_cast<std::uint32_t>(traffic.kindCount()));
+    scene.vehicles.insert(scene.vehicles.end(), standing.begin(), standing.end());
     scene.signalColours.reserve(city.signalHeads.size());
     for (const city::SignalHead& head : city.signalHeads) {
         const bool known = head.junction < city.roads.junctions.size();

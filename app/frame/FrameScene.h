@@ -13,6 +13,7 @@ namespace app {
 struct FrameScene {
     double time = 0;          ///< seconds
     std::vector<View> views;  ///< all displays and eyes of this frame
+    /// What mirrors by a map of its own: vehicles, then what stands in the city and does as they do.
     std::vector<vehicles::VehiclePose> vehicles;
     std::vector<vehicles::SignalColour> signalColours;  ///< one per CityModel::signalHeads
     Lighting lighting;

@@ -13,6 +13,8 @@
 
 #include "app/frame/MirroredVehicle.h"
 #include "app/frame/SkyMaps.h"
+#include "app/frame/StandingMaps.h"
+#include "app/frame/StandingReflectors.h"
 #include "app/frame/VehicleShading.h"
 #include "app/raytrace/RayTracer.h"
 #include "reflection/gl/LocalMapAtlas.h"
@@ -132,6 +134,8 @@ struct ReflectionEngine::Impl {
     std::vector<std::vector<reflection::Candidate>> candidates;
     std::vector<std::vector<reflection::MovingObject>> neighbours;
 
+    StandingMaps standingMaps;
+
     bool onGpu() const {
         return settings.method == ReflectionMethod::mem && settings.variant == MemVariant::ours &&
                (settings.mapsOn == MapsOn::gpu || (settings.mapsOn == MapsOn::automatic && !software));
@@ -139,6 +143,7 @@ struct ReflectionEngine::Impl {
     void countReferenceMaps();
     void forget() {
         planner.reset();
+        standingMaps.forget();
         fixedMapBuilt = false;
     }
     void buildMaps(const FrameScene& scene, std::span<const MapJob> jobs);
@@ -163,8 +168,8 @@ ReflectionEngine::ReflectionEngine(const reflection::GridTracer& tracer,
                                    std::span<const vehicles::VehicleModel> models,
                                    const ReflectionSettings& settings)
     : impl_(std::make_unique<Impl>(tracer, maps, models, settings)) {
-    // The middle of the painted body: a little above half of the height.
-    for (const vehicles::VehicleModel& model : models) impl_->centreHeights.push_back(0.55f * model.height);
+    for (const vehicles::VehicleModel& model : models)
+        impl_->centreHeights.push_back(model.reflectionCentre * model.height);
     impl_->countReferenceMaps();
 }
 
@@ -261,10 +266,18 @@ void ReflectionEngine::Impl::buildMaps(const FrameScene& scene, std::span<const 
         built[i].resize(requests[i].faceSize);
         packed[i].resize(requests[i].faceSize);
     }
+    std::vector<StandingMaps::Kept*> kept(jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+        if (const std::uint32_t id = scene.vehicles[jobs[i].vehicle].id; id >= firstStandingId)
+            kept[i] = &standingMaps.of(id, scene.lighting, requests[i]);
     std::atomic<std::uint64_t> rays{0};
     tbb::parallel_for(std::size_t{0}, 6 * jobs.size(), [&](std::size_t k) {
         const int face = static_cast<int>(k % 6);
-        rays += scratch.local().builder.buildFace(tracer, requests[k / 6], face, built[k / 6]);
+        StandingMaps::Kept* known = kept[k / 6];
+        if (known == nullptr || !known->give(face, built[k / 6])) {
+            rays += scratch.local().builder.buildFace(tracer, requests[k / 6], face, built[k / 6]);
+            if (known != nullptr) known->keep(face, built[k / 6]);
+        }
         reflection::drawMovingObjects(neighbours[k / 6], face, built[k / 6]);
         reflection::packFaceMips(built[k / 6], face, packed[k / 6]);
     });
@@ -306,7 +319,8 @@ void ReflectionEngine::Impl::gatherNeighbours(const FrameScene& scene, const Map
         if (i == job.vehicle || pose.model >= models.size()) continue;
         const glm::dvec3 apart = pose.position - job.centre;
         // Fewer than eight texels across (a face spans pi / 2): a blot on a body panel.
-        const double range = models[pose.model].length * faceSize / (8 * std::numbers::pi / 2);
+        const double size = std::max(models[pose.model].length, models[pose.model].height);
+        const double range = size * faceSize / (8 * std::numbers::pi / 2);
         const double squared = glm::dot(apart, apart);
         if (squared <= range * range) near.push_back({squared, i});
     }

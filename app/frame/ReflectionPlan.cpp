@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "app/frame/StandingReflectors.h"
+
 namespace app {
 
 namespace {
@@ -13,6 +15,9 @@ namespace {
 constexpr double streetHalfWidth = 8;
 /// Neighbours farther than this do not fill enough of a map to count.
 constexpr double neighbourRange = 15;
+/// Farther vehicles are blots even in the finest map of what stands, metres (see
+/// ReflectionEngine::gatherNeighbours).
+constexpr double standingRange = 45;
 /// Frames a map outlives its vehicle's last sight: a car behind a tree or a tour's cut back keeps its map for
 /// a second.
 constexpr std::uint64_t framesKept = 60;
@@ -251,7 +256,9 @@ ReflectionPlan ReflectionPlanner::plan(const FrameScene& scene, std::span<const 
 }
 
 /// How far the neighbours moved since the last frame, for maps out of sight as well: they may be shown again.
-/// A vehicle passing at distance r changes about (size / r)^2 of the map.
+/// A vehicle passing at distance r changes about (size / r)^2 of the map. Of what stands nothing else ever
+/// changes, it is looked at from near by, and its map is cheap to bring up to date: there the vehicle's own
+/// shift counts, as that of something at r, by the share size / r of the mirror's width that it takes.
 void ReflectionPlanner::countMotion(const FrameScene& scene, double elapsed) {
     // By x, so that of a great many vehicles each map looks only at those in a strip around it.
     std::vector<const vehicles::VehiclePose*> moving;
@@ -263,16 +270,25 @@ void ReflectionPlanner::countMotion(const FrameScene& scene, double elapsed) {
         const auto map = held_.find(own.id);
         if (map == held_.end() || !map->second.built) continue;
         double motion = 0;
+        const bool standing = stands(own);
+        const double range = standing ? standingRange : neighbourRange;
         const auto first = std::lower_bound(
-            moving.begin(), moving.end(), own.position.x - neighbourRange,
+            moving.begin(), moving.end(), own.position.x - range,
             [](const vehicles::VehiclePose* pose, double x) { return pose->position.x < x; });
         for (auto it = first; it != moving.end(); ++it) {
             const vehicles::VehiclePose& other = **it;
-            if (other.position.x > own.position.x + neighbourRange) break;
+            if (other.position.x > own.position.x + range) break;
             if (other.id == own.id) continue;
             const glm::dvec3 apart = other.position - own.position;
             const double squared = glm::dot(apart, apart);
-            if (squared > neighbourRange * neighbourRange) continue;
+            if (squared > range * range) continue;
+            if (standing) {
+                constexpr double vehicleLength = 4;
+                const double away = std::max(std::sqrt(squared), 1.0);
+                motion = std::max(motion, other.speed * elapsed * streetHalfWidth / away *
+                                              std::min(1.0, vehicleLength / away));
+                continue;
+            }
             constexpr double vehicleSize = 2;
             motion = std::max(motion, other.speed * elapsed *
                                           std::min(1.0, vehicleSize * vehicleSize / std::max(squared, 1.0)));

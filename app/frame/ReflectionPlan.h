@@ -66,7 +66,8 @@ struct PlanOptions {
 /// off by s turns by about s / r, and a mirror that shows the half space over D pixels shifts it by about D s
 /// / (pi r). r is not known for each feature; a street's half width stands for it. By the same measure the
 /// map of a neighbour at distance s may do for a vehicle: in practice for those of a few pixels, of which a
-/// long street has many.
+/// long street has many. A map of what stands in the city (StandingReflectors.h) is built when it comes into
+/// view, and again when something passes by.
 class ReflectionPlanner {
   public:
     /// Forgets all maps: after a change of city, light or method.

@@ -29,6 +29,7 @@ constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::
     {{0.30f, 0.012f, 0.010f}, 0.06f},
     {{0.016f, 0.016f, 0.017f}, 0.02f},
     {{0.04f, 0.038f, 0.036f}, 0.0f},
+    {{0.014f, 0.014f, 0.015f}, 0.048f},
 }};
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
+#include "app/frame/StandingReflectors.h"
 #include "app/frame/VehicleShading.h"
 #include "app/render/Frustum.h"
 
@@ -47,7 +48,7 @@ GroundShadows::GroundShadows(const FrameScene& frame, const RayMeshes& meshes, c
     const float pixelsPerRadian = DetailRule::of(view).pixelsPerRadian;
     const glm::vec3 sun = shading.lighting().sunDirection;
     for (const vehicles::VehiclePose& pose : frame.vehicles) {
-        if (pose.model >= meshes.vehicles().size()) continue;
+        if (pose.model >= meshes.vehicles().size() || stands(pose)) continue;
         const VehicleLevels& model = meshes.vehicles()[pose.model].levels;
         // Only vehicles that the view shows: VehiclePass::boundsOf.
         const glm::mat3 rotation = worldFromVehicle(pose);
@@ -66,7 +67,7 @@ GroundShadows::GroundShadows(const FrameScene& frame, const RayMeshes& meshes, c
 GroundShadows::GroundShadows(const FrameScene& frame, const RayMeshes& meshes, const RayShading& shading)
     : shading_(&shading) {
     for (const vehicles::VehiclePose& pose : frame.vehicles) {
-        if (pose.model >= meshes.vehicles().size()) continue;
+        if (pose.model >= meshes.vehicles().size() || stands(pose)) continue;
         rectangles_.push_back(rectangleOf(pose, meshes.vehicles()[pose.model].levels, glm::dvec3(0),
                                           shading.lighting().sunDirection));
         bound(rectangles_.back());

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "app/frame/Sky.h"
+#include "app/frame/StandingReflectors.h"
 #include "app/frame/ToneMap.h"
 #include "app/raytrace/GroundShadows.h"
 #include "app/raytrace/MirrorPixels.h"
@@ -66,6 +67,15 @@ struct RayTracer::Impl {
     Impl(const city::CityModel& cityModel, std::span<const vehicles::VehicleModel> models)
         : city(cityModel), meshes(cityModel, models), standing(meshes), shading(cityModel, meshes) {
         standing.addCity(city, {});
+        // The reflectors' models are the last ones.
+        if (models.size() >= city.reflectors.size()) {
+            FrameScene reflectors;
+            reflectors.vehicles =
+                standingPoses(city, static_cast<std::uint32_t>(models.size() - city.reflectors.size()));
+            std::vector<std::uint32_t> all(reflectors.vehicles.size());
+            std::iota(all.begin(), all.end(), 0u);
+            standing.addVehicles(reflectors, all, {});
+        }
         standing.commit();
         shading.setSun(nullptr, &standing.traced());
     }

@@ -70,6 +70,18 @@ CityGeometry::CityGeometry(const city::CityModel& city) {
         bounds_.extend(c.bounds);
         chunks_.push_back(c);
     }
+    for (const city::StandingReflector& reflector : city.reflectors) {
+        city::Mesh mesh = city::reflectorMesh(reflector, 3);
+        if (mesh.empty()) continue;
+        for (city::Vertex& v : mesh.vertices) v.position += reflector.foot;
+        Chunk c;
+        c.bounds = mesh.bounds();
+        c.kind = city::ChunkKind::furniture;
+        c.ranges = collector.add(mesh);
+        c.onlyShadow = true;
+        bounds_.extend(c.bounds);
+        chunks_.push_back(c);
+    }
     for (const city::Prototype& prototype : city.prototypes) {
         Prototype p;
         city::Aabb box;

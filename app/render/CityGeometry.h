@@ -31,6 +31,7 @@ class CityGeometry {
         city::Aabb bounds;
         Ranges ranges;
         city::ChunkKind kind = city::ChunkKind::building;
+        bool onlyShadow = false;  ///< a standing reflector: views draw it otherwise
     };
     struct Level {
         Ranges ranges;

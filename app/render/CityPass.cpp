@@ -60,6 +60,7 @@ CityPass::Counts CityPass::draw(const PassView& view, PassTarget target, float t
     order_.clear();
     const auto& chunks = geometry_.chunks();
     for (std::uint32_t i = 0; i < chunks.size(); ++i) {
+        if (chunks[i].onlyShadow && target != PassTarget::depth) continue;
         const glm::vec3 centre = chunks[i].bounds.centre() - eye;
         const glm::vec3 half = 0.5f * chunks[i].bounds.size();
         if (!view.sees(chunks[i].bounds)) {

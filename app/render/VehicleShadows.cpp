@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
+#include "app/frame/StandingReflectors.h"
+
 namespace app {
 
 namespace gl = reflection::gl;
@@ -24,6 +26,7 @@ std::uint32_t VehicleShadows::draw(const PassView& view, const VehicleGeometry& 
     instances_.clear();
     for (std::uint32_t index : chosen) {
         const vehicles::VehiclePose& pose = poses[index];
+        if (stands(pose)) continue;  // its shadow is the sun's, with the city's
         const VehicleGeometry::Model& model = geometry.models()[pose.model];
         const glm::vec3 position(pose.position - view.eye);
         if (view.allowedError(smallest, glm::length(position)) > 2 * model.radius) continue;

@@ -6,7 +6,7 @@
 #include "shadow.glsl"
 
 // vehicles::Surface: albedo, reflectance at normal incidence (F0).
-const vec4 surfaces[9] = vec4[9](vec4(1.0, 1.0, 1.0, 0.04),       // paint: times the instance's colour
+const vec4 surfaces[10] = vec4[10](vec4(1.0, 1.0, 1.0, 0.04),     // paint: times the instance's colour
                                  vec4(0.012, 0.015, 0.016, 0.06),  // glass
                                  vec4(0.05, 0.05, 0.05, 0.72),     // chrome
                                  vec4(0.018, 0.018, 0.019, 0.012), // tyre
@@ -14,7 +14,8 @@ const vec4 surfaces[9] = vec4[9](vec4(1.0, 1.0, 1.0, 0.04),       // paint: time
                                  vec4(0.55, 0.56, 0.58, 0.08),     // head lamp
                                  vec4(0.30, 0.012, 0.010, 0.06),   // tail lamp
                                  vec4(0.016, 0.016, 0.017, 0.02),  // trim
-                                 vec4(0.04, 0.038, 0.036, 0.0));   // interior
+                                 vec4(0.04, 0.038, 0.036, 0.0),    // interior
+                                 vec4(0.014, 0.014, 0.015, 0.048)); // polished stone
 
 layout(binding = 1) uniform sampler2DShadow sunShadow;
 

@@ -19,6 +19,7 @@ enum class Surface : std::uint32_t {
     tailLamp,
     trim,  ///< black plastic, grilles, underbody
     interior,
+    polishedStone,  ///< black granite: of no vehicle, but of what stands in a city and mirrors as they do
     count
 };
 
@@ -39,6 +40,9 @@ struct VehicleModel {
     float width = 1.8f;
     float height = 1.5f;
     float wheelRadius = 0.32f;
+    /// Share of the height at which what it mirrors is gathered: the middle of the painted body, a little
+    /// above half of it.
+    float reflectionCentre = 0.55f;
     std::vector<Level> levels;  ///< finest first, at least one
     city::Mesh wheel;           ///< left-hand wheel, axle along y, outside towards +y; empty: none
     std::vector<Wheel> wheels;

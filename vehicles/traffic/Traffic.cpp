@@ -198,6 +198,9 @@ double Traffic::time() const {
 std::size_t Traffic::size() const {
     return state_->vehicles.size();
 }
+std::size_t Traffic::kindCount() const {
+    return state_->kinds.size();
+}
 std::span<const VehiclePose> Traffic::poses() const {
     return state_->poses;
 }

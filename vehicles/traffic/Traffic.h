@@ -58,6 +58,7 @@ class Traffic {
     void step();          ///< one fixed step further
     double time() const;  ///< seconds simulated
     std::size_t size() const;
+    std::size_t kindCount() const;
     std::span<const VehiclePose> poses() const;  ///< VehiclePose::model is the index of the kind
     SignalColour signal(std::uint32_t junction, std::uint32_t group) const;
     std::uint64_t stateHash() const;  ///< over all state: determinism is tested by it

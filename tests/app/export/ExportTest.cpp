@@ -114,6 +114,33 @@ TEST(ExportTest, aCityComesBackWithEveryTriangleYUpAndInstancesShareTheirMesh) {
     EXPECT_FLOAT_EQ(static_cast<float>(model.nodes[1].matrix[14]), -4);
 }
 
+TEST(ExportTest, whatStandsAndMirrorsIsANodeOfItsOwnInPolishedMetal) {
+    city::CityModel city = smallCity();
+    const fs::path bare = emptyFolder() / "bare.glb", file = bare.parent_path() / "city.glb";
+    exportCity(city, bare);
+    city.reflectors.push_back({"sphere",
+                               city::StandingReflector::Shape::sphere,
+                               city::StandingReflector::Stuff::chrome,
+                               {3, 4, 0.5f},
+                               1,
+                               2});
+    exportCity(city, file);
+    const tinygltf::Model model = load(file);
+    EXPECT_EQ(triangles(model),
+              triangles(load(bare)) + city::reflectorMesh(city.reflectors[0], 4).triangleCount());
+    const auto node = std::find_if(model.nodes.begin(), model.nodes.end(),
+                                   [](const tinygltf::Node& n) { return n.name == "sphere"; });
+    ASSERT_NE(node, model.nodes.end());
+    ASSERT_EQ(node->matrix.size(), 16u);
+    EXPECT_NEAR(node->matrix[12], 3, 1e-5);
+    EXPECT_NEAR(node->matrix[13], 0.5, 1e-5) << "glTF's y is up";
+    EXPECT_NEAR(node->matrix[14], -4, 1e-5);
+    const auto& primitive = model.meshes[static_cast<std::size_t>(node->mesh)].primitives.at(0);
+    const auto& metal = model.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness;
+    EXPECT_GT(metal.metallicFactor, 0.5);
+    EXPECT_LT(metal.roughnessFactor, 0.1);
+}
+
 TEST(ExportTest, materialsKeepColourPatternAndCutOut) {
     const fs::path file = emptyFolder() / "city.glb";
     exportCity(smallCity(), file);

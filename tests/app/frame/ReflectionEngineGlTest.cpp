@@ -11,6 +11,7 @@
 
 #include "app/display/OffscreenContext.h"
 #include "app/frame/Lighting.h"
+#include "app/frame/StandingReflectors.h"
 #include "reflection/gl/DebugOutput.h"
 #include "reflection/gl/SoftwareRenderer.h"
 #include "tests/app/render/BoxWorld.h"
@@ -230,6 +231,28 @@ TEST_F(ReflectionEngineGlTest, anotherHourHasAnotherSky) {
         skies.push_back(actual);
     }
     EXPECT_LT(glm::length(skies[1][zenithOf(skies[1])]), 0.8f * glm::length(skies[0][zenithOf(skies[0])]));
+}
+
+TEST_F(ReflectionEngineGlTest, aMapOfWhatStandsIsTracedOnceAndShowsWhoeverPasses) {
+    scene_.vehicles[0].id = firstStandingId;
+    const std::vector<SeenVehicle> one{{0, 200.0f}};
+    const auto kept = engine(MapsOn::cpu);
+    LocalMapSlot slot = kept->update(scene_, one, drawer_).slots[0];
+    EXPECT_GT(kept->counters().rays, 0u);
+    const std::vector<glm::vec3> before = texels(*kept, slot);
+    scene_.vehicles[1].position.y += 4;
+    slot = kept->update(scene_, one, drawer_).slots[0];
+    EXPECT_EQ(kept->counters().rays, 0u) << "the street is where it was";
+    const auto anew = engine(MapsOn::cpu);
+    const LocalMapSlot fresh = anew->update(scene_, one, drawer_).slots[0];
+    EXPECT_GT(anew->counters().rays, 0u);
+    EXPECT_EQ(texels(*kept, slot), texels(*anew, fresh));
+    EXPECT_NE(texels(*kept, slot), before) << "the car beside it has moved";
+    EXPECT_GT(redOnes(before), 0u);
+    // Another light, another map.
+    scene_.lighting = lightingAt(8, 50);
+    kept->update(scene_, one, drawer_);
+    EXPECT_GT(kept->counters().rays, 0u);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::vector<Row> shaderSurfaces() {
     std::vector<Row> rows;
     const std::regex row(R"(vec4\(([0-9.]+), ([0-9.]+), ([0-9.]+), ([0-9.]+)\))");
     const std::string table = text.substr(
-        text.find("surfaces[9]"), text.find(';', text.find("surfaces[9]")) - text.find("surfaces[9]"));
+        text.find("surfaces[10]"), text.find(';', text.find("surfaces[10]")) - text.find("surfaces[10]"));
     for (std::sregex_iterator it(table.begin(), table.end(), row), end; it != end; ++it)
         rows.push_back(
             {{std::stof((*it)[1]), std::stof((*it)[2]), std::stof((*it)[3])}, std::stof((*it)[4])});

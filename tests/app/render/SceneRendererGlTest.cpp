@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/display/OffscreenContext.h"
+#include "app/frame/StandingReflectors.h"
 #include "app/render/Readback.h"
 #include "city/generate/Boulevard.h"
 #include "city/generate/PaperCity.h"
@@ -339,6 +340,39 @@ TEST_F(SceneRendererGlTest, sunCastsShadowsWhereOneTracesThem) {
     EXPECT_NEAR(levelAt(0, 28), lit, 12);  // beyond the shadow's end at y = 25
     EXPECT_NEAR(levelAt(8, 15), lit, 12);
     EXPECT_NEAR(levelAt(0, -12), lit, 12);
+}
+
+TEST_F(SceneRendererGlTest, whatStandsAndMirrorsCastsItsShadowAndIsDrawnByItsPose) {
+    city::CityModel city = test::boxCity();
+    city.reflectors.push_back({"ball",
+                               city::StandingReflector::Shape::sphere,
+                               city::StandingReflector::Stuff::chrome,
+                               {0, 7, 0.5f},
+                               2,
+                               4});
+    std::vector<vehicles::VehicleModel> models = models_;
+    for (vehicles::VehicleModel& model : standingModels(city)) models.push_back(model);
+    scene_.vehicles.clear();
+    scene_.lighting.sunDirection = glm::normalize(glm::vec3(-1, 0, 1.2f));
+    const View view = lookAt({4, -9, 9}, {2, 7, 0}, 1.0, size_);
+    const auto pixelOf = [&](const glm::dvec3& p) {
+        const glm::vec4 clip = view.clipFromView * view.viewFromWorld * glm::vec4(glm::vec3(p - view.eye), 1);
+        return glm::ivec2((0.5f + 0.5f * clip.x / clip.w) * static_cast<float>(size_.x),
+                          (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(size_.y));
+    };
+    SceneRenderer renderer(city, models, {});
+    const Image8 without = draw(renderer, view);
+    scene_.vehicles = standingPoses(city, 1);
+    const Image8 with = draw(renderer, view);
+    test::writePng("standing-ball", with);
+    // The middle of the ball is 2.5 m up; its shadow falls 2.5 / 1.2 m further on.
+    const glm::ivec2 shade = pixelOf({0 + 2.5 / 1.2, 7, 0}), ball = pixelOf({0, 7, 2.5});
+    const glm::ivec2 lit = pixelOf({-6, 7, 0});
+    EXPECT_LT(pixel(without, shade.x, shade.y).g, 0.75 * pixel(without, lit.x, lit.y).g)
+        << "a shadow before the ball is drawn";
+    EXPECT_EQ(pixel(with, lit.x, lit.y), pixel(without, lit.x, lit.y));
+    EXPECT_NE(pixel(with, ball.x, ball.y), pixel(without, ball.x, ball.y));
+    EXPECT_EQ(renderer.counters().vehiclesDrawn, 1u);
 }
 
 }  // namespace
