@@ -34,6 +34,11 @@ std::vector<Bench> allBenches() {
           "depth against ray tracing; or a scene FILE.json",
           saveOption},
          benchMirrors},
+        {{"square",
+          "what stands in the city and mirrors it: error by every method, and what it costs; pictures in "
+          "--out",
+          trafficOptions | qualityOption | cellOption | pictureOptions | outOptions},
+         benchSquare},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},
          benchStills},

@@ -24,6 +24,7 @@ int reportBench(const Options& options, const ResultFile& results,
 int benchCars(const Options& options);
 int benchEmpty(const Options& options);
 int benchGovernor(const Options& options);
+int benchSquare(const Options& options);
 int benchStills(const Options& options);
 int benchStreets(const Options& options);
 int benchWindows(const Options& options);

@@ -1,0 +1,83 @@
+#include "app/commands/SquareShots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <limits>
+
+namespace app {
+
+namespace {
+
+constexpr double eyeHeight = 1.7;   // metres
+constexpr double farAway = 12;      // metres
+constexpr double fieldOfView = 50;  // degrees
+constexpr double nearby = 30;       // metres within which vehicles are seen in a reflector
+
+/// From a place towards the nearest lane's middle line: unit, level.
+glm::dvec3 towardsLane(const city::CityModel& city, const glm::dvec3& from) {
+    double least = std::numeric_limits<double>::infinity();
+    glm::dvec3 best(0, -1, 0);
+    for (const city::Lane& lane : city.roads.lanes)
+        for (const glm::vec3& p : lane.centreLine) {
+            const glm::dvec2 d = glm::dvec2(p) - glm::dvec2(from);
+            const double length = glm::length(d);
+            if (length < least && length > 1e-3) {
+                least = length;
+                best = glm::dvec3(d / length, 0);
+            }
+        }
+    return best;
+}
+
+}  // namespace
+
+std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 resolution) {
+    std::vector<SquareShot> shots;
+    if (city.reflectors.empty()) return shots;
+    const auto look = [&](const glm::dvec3& middle, const glm::dvec3& direction, double away) {
+        const glm::dvec3 eye(glm::dvec2(middle + away * direction), eyeHeight);
+        return lookAt(eye, middle, glm::radians(fieldOfView), resolution);
+    };
+    glm::dvec3 sum(0);
+    for (std::uint32_t i = 0; i < city.reflectors.size(); ++i) {
+        const city::StandingReflector& reflector = city.reflectors[i];
+        const glm::dvec3 middle(reflector.centre());
+        const glm::dvec3 direction = towardsLane(city, middle);
+        const double half = 0.5 * static_cast<double>(std::max(reflector.height, 2 * reflector.radius));
+        const double close = half / std::tan(0.25 * glm::radians(fieldOfView)) + reflector.radius;
+        shots.push_back({reflector.name + " near", look(middle, direction, close), i});
+        shots.push_back({reflector.name + " far", look(middle, direction, farAway), i});
+        sum += middle;
+    }
+    const glm::dvec3 middle = sum / static_cast<double>(city.reflectors.size());
+    shots.push_back({"square", look(middle, towardsLane(city, middle), farAway), std::nullopt});
+    return shots;
+}
+
+vehicles::Traffic busyTraffic(const Scene& scene, std::uint64_t seed, std::uint32_t cars, double seconds) {
+    const auto closeness = [&](const vehicles::Traffic& traffic) {
+        double sum = 0;
+        for (const city::StandingReflector& reflector : scene.city.reflectors)
+            for (const vehicles::VehiclePose& pose : traffic.poses())
+                sum += std::max(0.0, nearby - glm::length(pose.position - glm::dvec3(reflector.centre())));
+        return sum;
+    };
+    vehicles::Traffic traffic = startTraffic(scene, seed, cars);
+    double best = closeness(traffic);
+    std::uint64_t steps = 0, bestSteps = 0;
+    for (const double start = traffic.time(); traffic.size() > 0 && traffic.time() < start + seconds;) {
+        traffic.step();
+        ++steps;
+        if (const double now = closeness(traffic); now > best) {
+            best = now;
+            bestSteps = steps;
+        }
+    }
+    vehicles::Traffic again = startTraffic(scene, seed, cars);
+    for (std::uint64_t i = 0; i < bestSteps; ++i) again.step();
+    return again;
+}
+
+}  // namespace app
