@@ -59,7 +59,7 @@ glm::dvec3 sphereReflection(const glm::dvec3& eye, const glm::dvec3& vertex) {
 
 TEST(ReflectionSearch, AgreesWithTheSpheresOwnSolution) {
     const BuiltReflectorMap built =
-        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 800), {0, 0, 0}, Bend::convex);
+        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 500), {0, 0, 0}, Bend::convex);
     Scatter random(1);
     int found = 0;
     for (int view = 0; view < 20; ++view) {

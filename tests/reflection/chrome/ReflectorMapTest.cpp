@@ -68,7 +68,7 @@ TEST(ReflectorMap, ReproducesAPlateToRounding) {
 
 TEST(ReflectorMap, ErrorOfSmoothSurfacesFallsAsTheFourthPowerOfTheCells) {
     // An ellipsoid without its stretch; the mesh's own facets (2e-5) bound how far down this can be seen.
-    const city::Mesh mesh = meshOf(ellipsoid({1, 0.6, 0.6}), 800);
+    const city::Mesh mesh = meshOf(ellipsoid({1, 0.6, 0.6}), 400);
     const auto error = [&](int cells) {
         return buildReflectorMap(mesh, {0, 0, 0}, Bend::convex, cells).report.worstDistance;
     };
