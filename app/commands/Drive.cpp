@@ -31,7 +31,8 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       rendererName_(std::move(renderer)),
       settings_{options.method,  options.mem,         options.quality,    options.cars.front(),
                 options.hour,    options.budgetMs,    options.error,      options.fixedQuality,
-                options.mirrors, options.mirrorDepth, options.mirrorMaps, options.weather},
+                options.mirrors, options.mirrorDepth, options.mirrorMaps, options.mirrorFade,
+                options.weather},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
       lighting_(scene.lighting) {
@@ -57,6 +58,7 @@ MirrorSettings Drive::mirrorSettings(const View& view) const {
     settings.on = settings_.mirrors;
     settings.depth = settings_.mirrorDepth;
     settings.maps = settings_.mirrorMaps;
+    settings.fade = settings_.mirrorFade;
     if (settings_.weather == Weather::wet) settings.wetRoad = roadSeenBy(scene_->city.roads, view);
     return settings;
 }

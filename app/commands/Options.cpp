@@ -189,6 +189,13 @@ void addMirrors(CLI::App& parser, Options& o) {
         ->type_name("N")
         ->capture_default_str()
         ->check(wholeBetween(0, 1000));
+    parser
+        .add_option(
+            "--mirror-fade", o.mirrorFade,
+            "metres behind a window or wet street, 0.1 to 10000, on which what it mirrors fades to 1/e; 0 "
+            "(default): it does not")
+        ->type_name("METRES")
+        ->check(CLI::IsMember({"0"}) | between(0.1, 10000, "metres"));
 }
 
 /// What the command line said and `Options` has no place for.

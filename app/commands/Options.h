@@ -51,9 +51,10 @@ struct Options {
     bool mirrors = true;           ///< windows mirror
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections a frame at most
+    double mirrorFade = 0;         ///< metres; 0: mirrors do not fade
     Weather weather = Weather::dry;
-    std::uint32_t samples = 64;    ///< mirror rays a pixel
-    std::uint32_t bounces = 3;     ///< mirrors in a row
+    std::uint32_t samples = 64;  ///< mirror rays a pixel
+    std::uint32_t bounces = 3;   ///< mirrors in a row
     bool quiet = false;
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
     std::uint64_t rays = 4'000'000;             ///< of `stability`
@@ -89,7 +90,7 @@ enum OptionGroup : unsigned {
     rayOptions = 1u << 18,        ///< --samples --bounces
     shotOptions = 1u << 19,       ///< --camera --stills, where there is never a window
 
-    mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps --weather
+    mirrorOptions = 1u << 22,  ///< --mirrors --mirror-depth --mirror-maps --mirror-fade --weather
     budgetOption = 1u << 20,   ///< --budget
     errorOptions = 1u << 21,   ///< --error --fixed-quality
     saveOption = 1u << 23,     ///< --save

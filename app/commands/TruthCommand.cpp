@@ -146,6 +146,7 @@ class TruthStill {
                           options_.seed};
         full.windows = windows();
         full.wet = wet();
+        full.mirrorFade = static_cast<float>(options_.mirrorFade);
         full.film = static_cast<int>(options_.samples);
         const std::filesystem::path parts = options_.out / ("truth_" + number + ".parts");
         const Stopwatch watch;
@@ -247,6 +248,7 @@ class TruthStill {
         MirrorSettings settings;
         settings.depth = windows();
         settings.maps = options_.mirrorMaps;
+        settings.fade = options_.mirrorFade;
         if (wet()) settings.wetRoad = roadSeenBy(scene_.city.roads, frame.views.front());
         return planner_.plan(frame.views, settings,
                              [&](const auto& from, const auto* glass, const auto& box) {

@@ -20,6 +20,7 @@ struct DriveSettings {
     bool mirrors = true;           ///< the city's windows mirror
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most
+    double mirrorFade = 0;         ///< metres behind a mirror on which what it shows fades to 1/e; 0: not
     Weather weather = Weather::dry;  ///< wet streets need `mirrors`
 
     /// Whether details follow from a budget or an error instead of `quality`.

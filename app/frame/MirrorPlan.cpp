@@ -61,6 +61,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
                                const Hidden& hidden) const {
     const auto start = std::chrono::steady_clock::now();
     MirrorPlan plan;
+    plan.fade = std::isfinite(settings.fade) ? std::max(settings.fade, 0.0) : 0.0;
     MirrorCounters& counters = plan.counters;
     counters.inCity = static_cast<std::uint32_t>(fronts_.size());
     const bool sound = std::ranges::all_of(views, finite);

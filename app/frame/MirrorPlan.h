@@ -25,12 +25,13 @@ struct MirrorSettings {
         250;  ///< of its glass, seen from the eye, below which a front is drawn without a map
     std::uint32_t mostFronts = 48;  ///< given to the tree: the most visible of those that are near
     double levelScale = 0.5;        ///< texels a pixel for each further mirror in a row
+    double fade = 0;  ///< metres behind a mirror on which what it shows fades to 1/e; 0: it does not
     reflection::Economies economies;
     /// World z of the road after rain, see roadHeightNear: one level mirror for all wet ground. Nothing: dry.
     std::optional<double> wetRoad = std::nullopt;
 
     bool operator==(const MirrorSettings& b) const {
-        return on == b.on && depth == b.depth && maps == b.maps;
+        return on == b.on && depth == b.depth && maps == b.maps && fade == b.fade;
     }
 };
 
@@ -64,6 +65,7 @@ struct MirrorPlan {
     reflection::ReflectionTree tree;    ///< roots: the frame's views
     std::vector<std::uint32_t> fronts;  ///< of each mirror of the tree: index of its GlassFront
     MirrorCounters counters;
+    double fade = 0;  ///< of the settings
     bool empty() const { return tree.empty(); }
 };
 

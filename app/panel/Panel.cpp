@@ -217,6 +217,10 @@ void Panel::Impl::drawMirrors(const PanelNews& news, DriveSettings& settings) {
     int maps = static_cast<int>(settings.mirrorMaps);
     ImGui::SliderInt("maps a frame", &maps, 0, 64, "%d", ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemEdited()) settings.mirrorMaps = static_cast<std::uint32_t>(maps);
+    auto fade = static_cast<float>(settings.mirrorFade);
+    ImGui::SliderFloat("fade over, m", &fade, 0, 200, fade > 0 ? "%.0f" : "not",
+                       ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemEdited()) settings.mirrorFade = fade < 0.5f ? 0.0 : static_cast<double>(fade);
     if (!ImGui::BeginTable("windows", 2, ImGuiTableFlags_SizingStretchProp)) return;
     const MirrorCounters& m = news.mirrors;
     row("fronts in the city", "%.0f", m.inCity);

@@ -131,6 +131,7 @@ std::uint64_t pictureKey(const city::CityModel& city, const FrameScene& frame, c
     hash.add(static_cast<std::uint64_t>(options.windows));
     hash.add(std::uint64_t{options.wet});
     hash.add(static_cast<std::uint64_t>(options.film));
+    hash.add(options.mirrorFade);
     hash.add(options.seed);
     return hash.value();
 }

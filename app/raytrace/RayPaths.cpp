@@ -30,9 +30,14 @@ glm::vec3 mirrorStart(const glm::vec3& position, const glm::vec3& facing, const 
     return position + facing * (glm::dot(facing, direction) >= 0 ? offSurface : -offSurface);
 }
 
-void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::TracedHit& hit,
+void RayPaths::shade(const Scene& scene, const PathRay& from, const reflection::TracedHit& hit,
                      bool mirrorAgain, std::span<glm::vec3> sums) {
     const RayShading& shading = *scene.shading;
+    PathRay ray = from;
+    if (ray.fading > 0) {
+        if (!hit.found()) return;  // infinitely far
+        ray.weight *= std::exp(-ray.fading * hit.t);
+    }
     if (!hit.found()) {
         sums[ray.sum] += ray.weight * skyRadiance(shading.lighting(), ray.direction);
         return;
@@ -65,6 +70,7 @@ void RayPaths::shade(const Scene& scene, const PathRay& ray, const reflection::T
             next_.push_back({pane->at, reflected, footprint, ray.spread, ray.weight * shares.mirrored,
                              ray.sum, ray.pixel});
             next_.back().pixel.reflect(pane->at, pane->normal);
+            next_.back().fading = ray.fading + scene.fading;
             return;
         }
         glm::vec3 light = shading.city(placed, triangle, weights, level);
@@ -112,8 +118,14 @@ void RayPaths::addWetRays(const Scene& scene, const WetGround& ground, const glm
         const glm::vec3 normal = glm::normalize(glm::vec3(slope, 1));
         glm::vec3 direction = mirrorDirection(normal, -ray.direction);
         direction.z = std::abs(direction.z);  // what is thrown downwards comes up from the next grain
-        return to.emplace_back(PathRay{
-            mirrorStart(at, up, direction), direction, footprint, spread, ray.weight * weight, ray.sum, {}});
+        return to.emplace_back(PathRay{mirrorStart(at, up, direction),
+                                       direction,
+                                       footprint,
+                                       spread,
+                                       ray.weight * weight,
+                                       ray.sum,
+                                       {},
+                                       ray.fading + scene.fading});
     };
     if (ground.puddle > 0) {
         PathRay& smooth =

@@ -31,6 +31,7 @@ struct PathRay {
     glm::vec3 weight{1};
     std::uint32_t sum = 0;  ///< index into the sums
     PixelRays pixel = {};
+    float fading = 0;  ///< of its light, 1 / metre of way: from flat mirrors that fade on
 };
 
 /// Direction in which light comes from that a surface mirrors towards the eye, as vehicle.frag has it.
@@ -53,6 +54,7 @@ class RayPaths {
         const GroundShadows* shadows = nullptr;          ///< those of vehicles; null: none
         TextureFilter filter = TextureFilter::standard;  ///< for rays that know their pixel
         bool wet = false;                                ///< it has rained: ground mirrors
+        float fading = 0;                                ///< 1 / metre: of the way behind each flat mirror
         int film = 1;  ///< rays for what a film of water spreads, where all its light comes from there
         std::uint64_t seed = 1;
     };
@@ -72,7 +74,7 @@ class RayPaths {
                            std::vector<PathRay>& to);
 
   private:
-    void shade(const Scene& scene, const PathRay& ray, const reflection::TracedHit& hit, bool mirrorAgain,
+    void shade(const Scene& scene, const PathRay& from, const reflection::TracedHit& hit, bool mirrorAgain,
                std::span<glm::vec3> sums);
 
     std::vector<reflection::TracedRay> traced_;

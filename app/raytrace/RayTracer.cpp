@@ -97,6 +97,7 @@ struct RayTracer::Impl {
         RayPaths::Scene paths{&shading, &scene, &frame, options.windows > 0, nullptr, filter};
         paths.wet = options.wet;
         paths.seed = options.seed;
+        paths.fading = options.mirrorFade > 0 ? 1 / options.mirrorFade : 0;
         return paths;
     }
 
@@ -194,7 +195,7 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
                 pixel.reflect(pane->at, pane->normal);
                 out.paths.rays.push_back({pane->at, mirrorDirection(pane->normal, -ray.direction),
                                           ray.spread * hit.t, ray.spread, glm::vec3(shares.mirrored),
-                                          static_cast<std::uint32_t>(index), pixel});
+                                          static_cast<std::uint32_t>(index), pixel, paths.fading});
                 return;
             }
             picture.radiance[index] = shading.city(placed, triangle, weights, level);

@@ -34,7 +34,8 @@ struct TraceOptions {
     /// It has rained: wet ground mirrors, as the first of `windows` mirrors in a row, or of `bounces` in what
     /// vehicles mirror; with 0 of them by mean light. Puddles by one ray a pixel.
     bool wet = false;
-    int film = 64;  ///< rays of a pixel for what the film of water on rough ground spreads
+    float mirrorFade = 0;  ///< metres behind flat mirrors on which what they show fades to 1/e; 0: not
+    int film = 64;         ///< rays of a pixel for what the film of water on rough ground spreads
 };
 
 /// What a pixel or texel shows.

@@ -18,11 +18,18 @@ struct FrameUniforms {
     glm::vec4 sunIrradiance{0};
     glm::vec4 skyIrradiance{0};
     glm::vec4 groundIrradiance{0};
+    glm::vec4 fadeFrom{0};
 
     void setEye(const glm::dvec3& eye) {
         const glm::vec3 high(eye);
-        eyeHigh = glm::vec4(high, 0);
+        eyeHigh = glm::vec4(high, eyeHigh.w);
         eyeLow = glm::vec4(glm::vec3(eye - glm::dvec3(high)), 0);
+    }
+    /// Of images of mirrors: what they show fades by so much a metre of way behind a plane (relative to the
+    /// eye: dot(xyz, p) + w = 0, the eye on its negative side).
+    void setFading(float perMetre, const glm::vec4& from) {
+        eyeHigh.w = perMetre;
+        fadeFrom = from;
     }
     void setShadow(const glm::mat4& shadowFromWorldMatrix, float normalOffset) {
         shadowFromWorld = shadowFromWorldMatrix;
@@ -35,6 +42,6 @@ struct FrameUniforms {
         groundIrradiance = glm::vec4(lighting.groundIrradiance, groundIrradiance.w);
     }
 };
-static_assert(sizeof(FrameUniforms) == 2 * 64 + 6 * 16);
+static_assert(sizeof(FrameUniforms) == 2 * 64 + 7 * 16);
 
 }  // namespace app

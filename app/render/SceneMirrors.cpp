@@ -30,7 +30,7 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         const float share = std::ldexp(1.f, -static_cast<int>(node.coarser));
         PassView pass = passOf(node, share);
         pass.skyline = my_.skylines.through(node.view, &node.glass);
-        my_.setFrame(pass);
+        setFrame(pass, &node);
         my_.chosen.clear();
         for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
         // A coarse body's normals bend what its paint mirrors, which shows where its shape does not:
@@ -61,7 +61,7 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
                    const reflection::MirrorTarget& target) override {
         setDrawState(target);
         const PassView pass = parent != nullptr ? passOf(*parent, 1) : view_;
-        my_.setFrame(pass);
+        setFrame(pass, parent);
         if (isRoad(node)) {
             drawRoad(node, map, parent, pass, target);
             return;
@@ -76,6 +76,18 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
     std::uint64_t triangles = 0;
 
   private:
+    /// Each mirror on the way fades all that it shows, what other mirrors show in it included.
+    void setFrame(const PassView& pass, const reflection::ReflectionNode* node) {
+        if (node == nullptr || plan_.fade <= 0) {
+            my_.setFrame(pass);
+            return;
+        }
+        int mirrors = 1;
+        for (const reflection::ReflectionNode* n = node; n->parent != reflection::ReflectionNode::none;
+             ++mirrors)
+            n = &plan_.tree.nodes[n->parent];
+        my_.setFrame(pass, 0, static_cast<float>(mirrors / plan_.fade), glm::vec4(node->glass));
+    }
     bool isRoad(const reflection::ReflectionNode& node) const {
         const auto mirrors = plan_.tree.mirrorsOf(node);
         return !mirrors.empty() && plan_.fronts[mirrors.front()] == MirrorPlan::road;

@@ -65,11 +65,14 @@ struct SceneRenderer::Impl {
                 gl::Program::fromFiles({"sky.vert", "sky.frag"}, definesFor(static_cast<PassTarget>(target)));
     }
 
-    void setFrame(const PassView& view, int layer = 0) {
+    /// `fading`: for images of mirrors, by so much a metre behind their glass.
+    void setFrame(const PassView& view, int layer = 0, float fading = 0,
+                  const glm::vec4& glass = glm::vec4(0)) {
         FrameUniforms uniforms;
         uniforms.clipFromRelative = view.clipFromRelative;
         uniforms.setEye(view.eye);
         uniforms.eyeLow.w = static_cast<float>(layer);
+        uniforms.setFading(fading, glass);
         uniforms.setLighting(lighting);
         uniforms.setShadow(shadow.shadowFromWorld(), shadow.normalOffset());
         frameUniforms.replaceWith(uniforms);

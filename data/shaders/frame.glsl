@@ -2,12 +2,13 @@
 layout(std140, binding = 0) uniform Frame {
     mat4 clipFromRelative;     // relative: world axes, origin at the eye
     mat4 shadowFromWorld;      // static shadow map: xy texture coordinates, z depth
-    vec4 eyeHigh;              // the eye in two floats, so that far from the origin no precision is lost
+    vec4 eyeHigh;              // the eye in two floats, so that far from the origin no precision is lost; w: fading, 1 / metre
     vec4 eyeLow;               // w: cube face that is drawn
     vec4 sunDirection;         // xyz; w: turbidity
     vec4 sunIrradiance;        // rgb; w: exposure
     vec4 skyIrradiance;        // rgb; w: 1 when lamps are lit
     vec4 groundIrradiance;     // rgb; w: metres along the normal by which shadow lookups start
+    vec4 fadeFrom;             // plane relative to the eye from which on what is seen fades: the glass that it is seen in
 } frame;
 
 const float inversePi = 0.31830989;

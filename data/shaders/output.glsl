@@ -2,7 +2,15 @@
 #ifdef CUBE
 layout(location = 0) out vec4 radianceOut;
 layout(location = 1) out float distanceOut;
+// What the way behind a mirror leaves; beyond a mirror on it, that mirror's own image has seen to it. The sky is infinitely far.
+float leftOfLight(vec3 relative) {
+    float way = length(relative);
+    if (isinf(way)) return 0.0;
+    float before = max(-frame.fadeFrom.w, 0.0) / max(dot(frame.fadeFrom.xyz, relative) / way, 1e-6);
+    return exp(-frame.eyeHigh.w * max(way - before, 0.0));
+}
 void writePixel(vec3 radiance, vec3 relative) {
+    if (frame.eyeHigh.w > 0.0) radiance *= leftOfLight(relative);
     radianceOut = vec4(radiance, 1.0);
     distanceOut = length(relative);
 }

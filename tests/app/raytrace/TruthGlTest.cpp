@@ -202,9 +202,11 @@ TEST_F(TruthGlTest, windowsDrawnAreWindowsTraced) {
     const MirrorPlanner planner(glass.fronts);
     const OffscreenTarget target(size);
     double before = 0;
-    for (int depth = 0; depth <= 2; ++depth) {
+    // Without fading by one mirror more each time; then both fading: each mirror by the way behind it.
+    for (const auto& [depth, fade] : {std::pair(0, 0.0), {1, 0.0}, {2, 0.0}, {2, 8.0}}) {
         MirrorSettings settings;
         settings.depth = depth;
+        settings.fade = fade;
         settings.maps = settings.mostFronts = 200;
         settings.leastPixels = 1;
         settings.reach = 1000;
@@ -220,19 +222,29 @@ TEST_F(TruthGlTest, windowsDrawnAreWindowsTraced) {
         prepareTracer();
         TraceOptions trace = plain;
         trace.windows = 2;
+        trace.mirrorFade = static_cast<float>(fade);
         const TracedPicture traced = tracer_->render(view_, trace);
         std::vector<unsigned char> mask = outside(edgesOf(traced, view_));
         for (std::size_t i = 0; i < mask.size(); ++i)
             if (traced.kind[i] != SeenKind::glass) mask[i] = 0;
         ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 2000);
         const double decibels = agreement(traced, drawn, mask);
-        RecordProperty("depth" + std::to_string(depth), std::to_string(decibels));
+        RecordProperty("depth" + std::to_string(depth) + (fade > 0 ? "fading" : ""),
+                       std::to_string(decibels));
         // Outlines within what is mirrored are not told apart, and fall on either side of a pixel.
         if (depth == 1) {
             EXPECT_GT(decibels, before + 3);
         }
         if (depth == 2) {
             EXPECT_GE(decibels, 30);
+        }
+        if (fade > 0) {
+            for (const float other : {0.0f, 16.0f, 4.0f}) {
+                trace.mirrorFade = other;
+                EXPECT_LT(agreement(tracer_->render(view_, trace), drawn, mask),
+                          decibels - (other > 0 ? 0.5 : 6))
+                    << other;
+            }
         }
         before = decibels;
     }
