@@ -59,7 +59,7 @@ glm::dvec3 sphereReflection(const glm::dvec3& eye, const glm::dvec3& vertex) {
 
 TEST(ReflectionSearch, AgreesWithTheSpheresOwnSolution) {
     const BuiltReflectorMap built =
-        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 500), {0, 0, 0}, Bend::convex);
+        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 700), {0, 0, 0}, Bend::convex);
     Scatter random(1);
     int found = 0;
     for (int view = 0; view < 20; ++view) {
@@ -76,7 +76,8 @@ TEST(ReflectionSearch, AgreesWithTheSpheresOwnSolution) {
             if (grazing < 0.05) continue;
             ++found;
             EXPECT_LT(glm::length(points[k].point - truth), 1e-5) << "cosine " << grazing;
-            EXPECT_NEAR(points[k].path, glm::length(eye - truth) + glm::length(vertices[k] - truth), 1e-5);
+            // Both legs end on a facet.
+            EXPECT_NEAR(points[k].path, glm::length(eye - truth) + glm::length(vertices[k] - truth), 2e-5);
         }
     }
     EXPECT_GT(found, 5000);

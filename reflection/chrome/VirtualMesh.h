@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <span>
+#include <vector>
+
+#include "reflection/chrome/VirtualObject.h"
+
+namespace reflection {
+
+struct VirtualMeshOptions {
+    VirtualOptions vertices = {};
+    /// Angle, seen from the eye, by which the middle of a reflected edge may lie off that of the straight one
+    /// that is drawn in its place: half a pixel of a 720-row view of 60 degrees.
+    double tolerance = 0.5 * 1.155 / 720;
+    /// An edge is halved no more often than this.
+    int mostHalvings = 6;
+    /// Half the angle of a cone around `towards` from the eye outside of which nothing is drawn, so that
+    /// edges there stay as they are; by default everything is.
+    glm::dvec3 towards{1, 0, 0};
+    double coneCosine = -2;
+};
+
+/// A vertex that was put in the middle of an edge.
+struct MiddleVertex {
+    std::uint32_t a, b;  ///< vertices before it, of the mesh or middles themselves
+};
+
+/// A mesh's image in one piece of a reflector, ready to be drawn: its triangles with as many vertices in the
+/// middles of edges as the image's bends ask for. Reflections of straight edges are curves: without these a
+/// kerb or a wall of two triangles would be drawn straight (the limit that Estalella et al. 2005 state in
+/// section 8).
+class VirtualMesh {
+  public:
+    /// The mesh's positions and triangles, in its own frame.
+    VirtualMesh(std::vector<glm::vec3> positions, std::vector<std::uint32_t> indices,
+                const VirtualMeshOptions& options);
+
+    /// Moves the image; see VirtualObject::update. Edges are halved until their middles lie within the
+    /// tolerance of where they are drawn, both triangles at an edge alike, so that no cracks open. Triangles
+    /// of which every vertex is hidden are left out, and so are those in which the image is still torn after
+    /// the last halving (on concave pieces, where neighbouring vertices may be seen at different points).
+    /// Cost: the vertices', and a search for each edge that is long on screen.
+    VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
+                         const VirtualMeshOptions& options);
+
+    std::size_t meshVertices() const { return positions.size(); }
+    /// Of the mesh, then of middles.
+    std::span<const VirtualVertex> vertices() const { return image; }
+    /// The middles, in the order in which they follow the mesh's vertices: what else belongs to a vertex
+    /// (normal, colour) is the mean of its ends'.
+    std::span<const MiddleVertex> middles() const { return added; }
+    std::span<const std::uint32_t> indices() const { return drawn; }
+
+  private:
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> triangles;
+    VirtualObject object;
+    std::vector<VirtualVertex> image;
+    std::vector<MiddleVertex> added;
+    std::vector<std::uint32_t> drawn;
+};
+
+}  // namespace reflection

@@ -1,0 +1,150 @@
+#include "reflection/chrome/VirtualMesh.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "Shapes.h"
+#include "reflection/chrome/BuildReflectorMap.h"
+
+namespace reflection {
+namespace {
+
+/// The directions between which a drawn edge stays, against those in which its middle is really seen.
+double worstBend(const VirtualMesh& mesh, const std::vector<glm::dvec3>& places, const ReflectorMap& map,
+                 const glm::dvec3& eye) {
+    double worst = 0;
+    for (std::size_t k = 0; k + 2 < mesh.indices().size(); k += 3)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = mesh.indices()[k + i], b = mesh.indices()[k + (i + 1) % 3];
+            const glm::dvec3 middle = 0.5 * (places[a] + places[b]);
+            ReflectionPoint r;
+            findReflectionPoints(map, eye, std::span(&middle, 1), std::span(&r, 1));
+            if (r.status != ReflectionStatus::found) continue;
+            // At the outline images move infinitely fast: there the last halving decides.
+            if (glm::dot(r.normal, glm::normalize(eye - r.point)) < 0.2) continue;
+            const glm::dvec3 exact = glm::normalize(r.point - eye);
+            const glm::dvec3 flat = glm::normalize(glm::dvec3(mesh.vertices()[a].fromEye) +
+                                                   glm::dvec3(mesh.vertices()[b].fromEye));
+            worst = std::max(worst, glm::length(exact - flat));
+        }
+    return worst;
+}
+
+std::vector<glm::dvec3> placesOf(const VirtualMesh& mesh, const std::vector<glm::vec3>& positions) {
+    std::vector<glm::dvec3> places(positions.begin(), positions.end());
+    for (const MiddleVertex& m : mesh.middles()) places.push_back(0.5 * (places[m.a] + places[m.b]));
+    return places;
+}
+
+/// A floor of two triangles under a ball.
+const std::vector<glm::vec3> floorCorners{{-2, -2, -.5f}, {2, -2, -.5f}, {2, 2, -.5f}, {-2, 2, -.5f}};
+const std::vector<std::uint32_t> floorTriangles{0, 1, 2, 0, 2, 3};
+
+TEST(VirtualMesh, BendsTheReflectedEdgesOfBigTrianglesWithinTheTolerance) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 100), {0, 0, 0}, Bend::convex).map;
+    const glm::dvec3 eye(0, -3, 1);
+    for (const double tolerance : {4e-3, 1e-3, 4e-4}) {
+        VirtualMeshOptions options;
+        options.tolerance = tolerance;
+        options.mostHalvings = 9;
+        VirtualMesh mesh(floorCorners, floorTriangles, options);
+        mesh.update(map, eye, glm::dmat4(1), options);
+        EXPECT_GT(mesh.middles().size(), 20U);
+        // Edges that run into the outline are given up after the last halving, and with them a few that were
+        // made then.
+        EXPECT_LT(worstBend(mesh, placesOf(mesh, floorCorners), map, eye), 1.5 * tolerance);
+    }
+    VirtualMeshOptions stiff;
+    stiff.mostHalvings = 0;
+    VirtualMesh mesh(floorCorners, floorTriangles, stiff);
+    mesh.update(map, eye, glm::dmat4(1), stiff);
+    EXPECT_TRUE(mesh.middles().empty());
+    EXPECT_GT(worstBend(mesh, placesOf(mesh, floorCorners), map, eye), 1e-2);
+}
+
+TEST(VirtualMesh, AFlatMirrorAsksForNoMiddles) {
+    const ReflectorMap map = buildReflectorMap(plate(1), {0, 0, -.5}, Bend::convex).map;
+    const std::vector<glm::vec3> box{{-.2f, 0, .3f}, {.3f, 0, .4f}, {0, .3f, .8f}};
+    const VirtualMeshOptions options;
+    VirtualMesh mesh(box, {0, 1, 2}, options);
+    mesh.update(map, {0, -1, 1}, glm::dmat4(1), options);
+    EXPECT_TRUE(mesh.middles().empty());
+    EXPECT_EQ(mesh.indices().size(), 3U);
+}
+
+TEST(VirtualMesh, LeavesNoCracksAndCoversTheMesh) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({.4, .3, .4}), 100), {0, 0, 0}, Bend::convex).map;
+    const VirtualMeshOptions options;
+    VirtualMesh mesh(floorCorners, floorTriangles, options);
+    mesh.update(map, {0, -3, 3}, glm::dmat4(1), options);
+    const std::vector<glm::dvec3> places = placesOf(mesh, floorCorners);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    double area = 0;
+    for (std::size_t k = 0; k + 2 < mesh.indices().size(); k += 3) {
+        const auto v = [&](std::size_t i) { return mesh.indices()[k + i]; };
+        for (std::size_t i = 0; i < 3; ++i) ++edges[{v(i), v((i + 1) % 3)}];
+        area += glm::cross(places[v(1)] - places[v(0)], places[v(2)] - places[v(0)]).z / 2;
+    }
+    int open = 0;
+    for (const auto& [ends, uses] : edges) {
+        EXPECT_EQ(uses, 1);
+        if (edges.count({ends.second, ends.first}) > 0) continue;
+        ++open;
+        // Only the floor's own border, or what lies hidden behind the ball, has triangles on one side alone.
+        const glm::dvec3 middle = 0.5 * (places[ends.first] + places[ends.second]);
+        const bool border = std::max(std::abs(middle.x), std::abs(middle.y)) > 1.999;
+        const bool behind = mesh.vertices()[ends.first].status == ReflectionStatus::hidden &&
+                            mesh.vertices()[ends.second].status == ReflectionStatus::hidden;
+        EXPECT_TRUE(border || behind) << middle.x << ' ' << middle.y;
+    }
+    EXPECT_GT(open, 4);
+    EXPECT_GT(area, 14);
+    EXPECT_LE(area, 16.0001);
+}
+
+TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 100, 2.0, glm::pi<double>(), true), {0, 0, 0},
+                          Bend::concave)
+            .map;
+    // A panel through the region where the bowl shows things several times.
+    std::vector<glm::vec3> panel;
+    std::vector<std::uint32_t> triangles;
+    for (int j = 0; j <= 8; ++j)
+        for (int i = 0; i <= 8; ++i) panel.push_back({-.8f + .2f * float(i), .3f, -.7f + .2f * float(j)});
+    for (std::uint32_t j = 0; j < 8; ++j)
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            const std::uint32_t a = j * 9 + i;
+            triangles.insert(triangles.end(), {a, a + 1, a + 10, a, a + 10, a + 9});
+        }
+    VirtualMeshOptions options;
+    options.mostHalvings = 3;
+    VirtualMesh mesh(panel, triangles, options);
+    const glm::dvec3 eye(.1, -.5, 1.5);
+    mesh.update(map, eye, glm::dmat4(1), options);
+    for (std::size_t k = 0; k + 2 < mesh.indices().size(); k += 3)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const VirtualVertex& a = mesh.vertices()[mesh.indices()[k + i]];
+            const VirtualVertex& b = mesh.vertices()[mesh.indices()[k + (i + 1) % 3]];
+            if (a.status != ReflectionStatus::found || b.status != ReflectionStatus::found) continue;
+            EXPECT_LT(glm::length(glm::normalize(a.fromEye) - glm::normalize(b.fromEye)), 0.2);
+        }
+}
+
+TEST(VirtualMesh, OutsideItsConeEdgesStayAsTheyAre) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 60), {0, 0, 0}, Bend::convex).map;
+    VirtualMeshOptions options;
+    options.towards = {0, 0, 1};
+    options.coneCosine = 0.9;
+    VirtualMesh mesh(floorCorners, floorTriangles, options);
+    mesh.update(map, {0, -3, 1}, glm::dmat4(1), options);
+    EXPECT_TRUE(mesh.middles().empty());
+}
+
+}  // namespace
+}  // namespace reflection
