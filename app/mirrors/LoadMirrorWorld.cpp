@@ -5,7 +5,9 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include "app/mirrors/Lathe.h"
 #include "app/mirrors/LitShapes.h"
 #include "app/mirrors/MirrorWorld.h"
 
@@ -130,6 +132,59 @@ void readCurved(const Place& p, MirrorWorld& world) {
     world.curved.push_back(std::move(c));
 }
 
+constexpr double degree = 0.017453292519943295;
+
+Lathe latheOf(const Place& p) {
+    Lathe lathe;
+    lathe.foot = p.at("foot").vector();
+    if (p.has("axis")) lathe.axis = p.at("axis").vector();
+    const std::vector<Place> points = p.at("profile").items();
+    if (points.size() > 256) p.at("profile").refuse("has more than 256 points", "leave some out");
+    for (const Place& point : points) {
+        const std::vector<Place> two = point.items();
+        if (two.size() != 2)
+            point.refuse("has " + std::to_string(two.size()) + " numbers", "write two, [radius, height]");
+        lathe.profile.emplace_back(two[0].number(0, 1e6), two[1].number(-1e6, 1e6));
+    }
+    lathe.steps = p.at("steps").whole(1, 64);
+    lathe.slices = p.at("slices").whole(3, 512);
+    if (p.has("arc")) {
+        const std::vector<Place> two = p.at("arc").items();
+        if (two.size() != 2)
+            p.at("arc").refuse("has " + std::to_string(two.size()) + " numbers", "write two, [from, to]");
+        lathe.from = degree * two[0].number(-360, 360);
+        lathe.to = degree * two[1].number(-360, 720);
+    }
+    if (const std::optional<LatheProblem> problem = latheProblem(lathe))
+        p.refuse(problem->what, problem->remedy);
+    return lathe;
+}
+
+void readChromeLathe(const Place& p, MirrorWorld& world) {
+    p.only({"kind", "foot", "axis", "profile", "steps", "slices", "arc", "fine", "reflectance", "roughness",
+            "tint"});
+    const Lathe lathe = latheOf(p);
+    const int times = p.has("fine") ? p.at("fine").whole(1, 16) : 4;
+    if (std::int64_t{times} * times * lathe.triangles() > 4000000)
+        p.refuse("its fine surface has more than 4000000 triangles",
+                 "make 'fine', 'steps' or 'slices' smaller");
+    MirrorWorld::Curved c;
+    c.reflector.id = world.curved.size();
+    c.reflector.surface = surfaceOf(p);
+    c.tint = tintOf(p);
+    c.mesh = LatheSurface(lathe).mesh(glm::vec3(1), glm::vec3(1));
+    auto surface = std::make_shared<const LatheSurface>(lathe.finer(times));
+    c.fine = surface->mesh(glm::vec3(1), glm::vec3(1));
+    c.surface = std::move(surface);
+    const city::Aabb box = c.mesh.bounds();
+    c.reflector.centre = glm::dvec3(0.5f * (box.min + box.max));
+    double radius = 0;
+    for (const LitMesh::Corner& corner : c.fine.corners)
+        radius = std::max(radius, glm::distance(glm::dvec3(corner.position), c.reflector.centre));
+    c.reflector.radius = radius;
+    world.curved.push_back(std::move(c));
+}
+
 /// Of one object, by its numbers alone; 0 for what `readObject` will refuse.
 int trianglesOf(const Place& p) {
     const std::string kind = p.at("kind").text();
@@ -138,6 +193,7 @@ int trianglesOf(const Place& p) {
         return std::max(static_cast<int>(p.at("corners").items().size()) - 2, 0);
     if (kind == "panel" && p.has("columns") && p.has("rows"))
         return 2 * p.at("columns").whole(1, 1000) * p.at("rows").whole(1, 1000);
+    if (kind == "lathe" || kind == "chrome lathe") return latheOf(p).triangles();
     if (kind == "pillar" && p.has("slices")) return 2 * p.at("slices").whole(3, 512);
     if ((kind == "ball" || kind == "chrome ball") && p.has("slices") && p.has("stacks"))
         return 2 * p.at("slices").whole(3, 512) * (p.at("stacks").whole(2, 512) - 1);
@@ -149,6 +205,7 @@ void readObject(const Place& p, MirrorWorld& world) {
     LitMesh mesh;
     if (kind == "mirror") return readMirror(p, world);
     if (kind == "chrome ball") return readCurved(p, world);
+    if (kind == "chrome lathe") return readChromeLathe(p, world);
     if (kind == "box") {
         p.only({"kind", "low", "high", "colour"});
         const glm::vec3 low(p.at("low").vector()), high(p.at("high").vector());
@@ -180,9 +237,13 @@ void readObject(const Place& p, MirrorWorld& world) {
             litPillar(glm::vec3(p.at("foot").vector()), static_cast<float>(p.at("radius").number(1e-3, 1e6)),
                       static_cast<float>(p.at("height").number(1e-3, 1e6)), p.at("slices").whole(3, 512),
                       p.at("colour").share());
+    } else if (kind == "lathe") {
+        p.only({"kind", "foot", "axis", "profile", "steps", "slices", "arc", "colour", "second"});
+        const glm::vec3 colour = p.at("colour").share();
+        mesh = LatheSurface(latheOf(p)).mesh(colour, p.has("second") ? p.at("second").share() : colour);
     } else {
         p.at("kind").refuse("there is no '" + kind + "'",
-                            "choose mirror, chrome ball, box, panel, ball or pillar");
+                            "choose mirror, chrome ball, chrome lathe, box, panel, ball, pillar or lathe");
     }
     bakeLight(mesh);
     world.objects.push_back(std::move(mesh));

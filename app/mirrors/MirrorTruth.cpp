@@ -90,7 +90,7 @@ struct MirrorTruth::Impl {
             for (std::uint32_t i = 2; i < positions.size(); ++i) indices.insert(indices.end(), {0, i - 1, i});
             plain.push_back(plainMesh(positions, indices));
         }
-        for (const MirrorWorld::Curved& c : world.curved) plain.push_back(plainMesh(c.mesh));
+        for (const MirrorWorld::Curved& c : world.curved) plain.push_back(plainMesh(c.finest()));
         std::vector<reflection::TracedMeshes::Part> parts;
         parts.reserve(plain.size());
         for (const city::Mesh& m : plain) parts.push_back({&m, false, nullptr});
@@ -180,7 +180,7 @@ struct MirrorTruth::Impl {
         } else {
             path.curved = 1;
             const glm::dvec3 n = glm::normalize(
-                interpolated(world.curved[hit.part - balls].mesh, hit, &LitMesh::Corner::normal));
+                interpolated(world.curved[hit.part - balls].finest(), hit, &LitMesh::Corner::normal));
             const auto roughness =
                 static_cast<double>(world.curved[hit.part - balls].reflector.surface.roughness);
             path.rough = path.rough || roughness > 0;

@@ -26,10 +26,11 @@ struct TracedPicture {
     std::vector<std::uint8_t> curved;  ///< 1 where one of them is curved
 };
 
-/// A MirrorWorld as rays see it (Embree): exact reflections in flat mirrors; in curved ones at the
-/// interpolated normal, as the rasteriser shades them, but from the very point. Rough mirrors: normals
-/// of microfacets with Gaussian slopes of variance roughness^4 / 2 on each axis, in the proportion in which
-/// they are visible, without shadowing; every mirror on the way is rough at every sample.
+/// A MirrorWorld as rays see it (Embree): exact reflections in flat mirrors; in curved ones (their
+/// finest triangles) at the interpolated normal, as the rasteriser shades them, but from the very point.
+/// Rough mirrors: normals of microfacets with Gaussian slopes of variance roughness^4 / 2 on each axis, in
+/// the proportion in which they are visible, without shadowing; every mirror on the way is rough at every
+/// sample.
 class MirrorTruth {
   public:
     explicit MirrorTruth(const MirrorWorld& world);  ///< keeps a reference; throws where Embree cannot start

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "reflection/planar/ReflectionTree.h"
 
 namespace app {
+
+class LatheSurface;
 
 /// Triangles with light in their corners, as radiosity leaves them: what a corner shows from every direction,
 /// linear radiance, 0 .. 1.
@@ -44,6 +47,12 @@ struct MirrorWorld {
         reflection::CurvedReflector reflector;
         glm::vec3 tint{0};
         LitMesh mesh;  ///< colours unused
+        /// The same surface in finer triangles, of which reflector maps are made and which rays meet; empty:
+        /// `mesh` is as fine as it gets.
+        LitMesh fine;
+        std::shared_ptr<const LatheSurface> surface;  ///< what both are samples of; null: a ball
+
+        const LitMesh& finest() const { return fine.corners.empty() ? mesh : fine; }
     };
     std::string name;
     std::vector<LitMesh> objects;
