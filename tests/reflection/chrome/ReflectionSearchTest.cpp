@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
-#include "../EveryInstructionSet.h"
-#include "Shapes.h"
 #include "reflection/chrome/BuildReflectorMap.h"
+#include "tests/reflection/EveryInstructionSet.h"
+#include "tests/reflection/chrome/Shapes.h"
 
 namespace reflection {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "Shapes.h"
 #include "reflection/chrome/BuildReflectorMap.h"
+#include "tests/reflection/chrome/Shapes.h"
 
 namespace reflection {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "Shapes.h"
+#include "tests/reflection/chrome/Shapes.h"
 #include "vehicles/models/Fleet.h"
 #include "vehicles/models/VehicleModel.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "Shapes.h"
 #include "reflection/chrome/BuildReflectorMap.h"
+#include "tests/reflection/chrome/Shapes.h"
 
 namespace reflection {
 namespace {
