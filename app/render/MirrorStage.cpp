@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <optional>
+
 #include "app/render/MirrorStencil.h"
 #include "app/render/MirrorWorldRenderer.h"
 #include "reflection/gl/Framebuffer.h"
@@ -54,6 +56,8 @@ struct MirrorStage::Impl {
     gl::Texture colour, depth;
     gl::Framebuffer framebuffer;
     MirrorTarget target;
+    std::optional<MirrorWorldChrome> chrome;
+    ChromeFrame chromeFrame;
 };
 
 MirrorStage::MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::CurvedMaps curved,
@@ -79,7 +83,19 @@ const reflection::ReflectionTree& MirrorStage::draw(reflection::TreeSettings set
     my.drawScene();
     my.pass.drawReflections(my.tree, 0, my.renderer, my.target);
     my.renderer.finishRoot(my.tree, 0);
+    my.chromeFrame = {};
+    if (my.chrome) my.chromeFrame = my.chrome->draw(my.tree.roots[0].view, my.size, my.framebuffer.name());
     return my.tree;
+}
+
+void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options) {
+    Impl& my = *impl_;
+    my.chrome.emplace(my.world, options);
+    for (std::size_t c = 0; c < my.world.curved.size(); ++c) my.renderer.setLeftOut(c, my.chrome->closeTo(c));
+}
+
+const ChromeFrame& MirrorStage::chromeFrame() const {
+    return impl_->chromeFrame;
 }
 
 const reflection::ReflectionTree& MirrorStage::drawWithStencil(reflection::TreeSettings settings) {

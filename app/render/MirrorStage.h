@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/mirrors/MirrorWorld.h"
+#include "app/render/MirrorWorldChrome.h"
 #include "reflection/gl/MirrorPass.h"
 
 namespace app {
@@ -23,6 +24,11 @@ class MirrorStage {
     const reflection::ReflectionTree& draw(reflection::TreeSettings settings);
     /// The same picture without maps: see drawByStencil.
     const reflection::ReflectionTree& drawWithStencil(reflection::TreeSettings settings);
+
+    /// From now on curved reflectors show what is close by searched reflection points. Environment maps then
+    /// leave it out.
+    void setChrome(const reflection::VirtualMeshOptions& options);
+    const ChromeFrame& chromeFrame() const;  ///< of the last frame
 
     /// Linear radiance, row 0 at the top. Waits.
     std::vector<glm::vec3> read() const;

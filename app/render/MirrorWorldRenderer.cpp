@@ -75,6 +75,15 @@ struct MirrorWorldRenderer::Impl {
         environment.resize(w.curved.size(), 0);
     }
 
+    /// The objects of a list that a reflector's environment map holds.
+    std::span<const std::uint32_t> heldBy(std::uint32_t curvedIndex, std::span<const std::uint32_t> objects) {
+        if (curvedIndex >= leftOut.size() || leftOut[curvedIndex].empty()) return objects;
+        held.clear();
+        for (const std::uint32_t o : objects)
+            if (!leftOut[curvedIndex][o]) held.push_back(o);
+        return held;
+    }
+
     const MirrorWorldGeometry& geometry(const EyeView& view) const {
         return view.projection == Projection::paraboloid && fine ? *fine : plain;
     }
@@ -248,6 +257,8 @@ struct MirrorWorldRenderer::Impl {
     gl::VertexArray nothing = gl::VertexArray::create();
     std::vector<std::uint32_t> environment;
     std::vector<bool> flatApplied, curvedApplied;
+    std::vector<std::vector<bool>> leftOut;
+    std::vector<std::uint32_t> held;
     MirrorDrawList list;
     bool clusters = true;
     std::uint64_t triangles = 0;
@@ -264,6 +275,11 @@ bool MirrorWorldRenderer::canDrawLayers() {
 
 void MirrorWorldRenderer::setClusters(bool clusters) {
     impl_->clusters = clusters;
+}
+
+void MirrorWorldRenderer::setLeftOut(std::size_t curved, std::vector<bool> objects) {
+    impl_->leftOut.resize(impl_->world.curved.size());
+    impl_->leftOut[curved] = std::move(objects);
 }
 
 void MirrorWorldRenderer::setOblique(bool oblique) {
@@ -291,8 +307,8 @@ void MirrorWorldRenderer::drawFace(const ReflectionTree& tree, const ReflectionR
                                    const MirrorTarget& target) {
     impl_->markRoot(tree, face);
     impl_->into(true, target.layer);
-    impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, {}, tree.objectsOf(face), face.frustum,
-                     face.curved);
+    impl_->drawImage(face.view, face.view.clipFromView, {0, 0, 0, 1}, {},
+                     impl_->heldBy(face.curved, tree.objectsOf(face)), face.frustum, face.curved);
 }
 
 void MirrorWorldRenderer::finishRoot(const ReflectionTree& tree, std::uint32_t root) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "app/mirrors/MirrorWorld.h"
 #include "reflection/gl/MirrorScene.h"
@@ -42,6 +43,10 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
     /// Clusters of triangles that an image does not see are left out of it, where it has a frustum
     /// (Economies::offScreen); true from the beginning.
     void setClusters(bool clusters);
+
+    /// Objects that the environment map of a curved reflector does not hold, because it shows them otherwise:
+    /// one flag for each object. Empty: it holds all.
+    void setLeftOut(std::size_t curved, std::vector<bool> objects);
 
     /// Mirrors by oblique near planes in place of clip distances.
     void setOblique(bool oblique);

@@ -80,6 +80,12 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
         const Triangle t{triangles[k], triangles[k + 1], triangles[k + 2]};
         if (usable(t[0]) && usable(t[1]) && usable(t[2])) open.push_back(t);
     }
+    // An edge whose image is a short arc lies off its chord by its squared length over eight radii of the
+    // arc. Images bend about as the reflector's own outline does, towards it more: by up to eight times as
+    // much is allowed for.
+    const double unbent = options.coneCosine > -1
+                              ? std::sqrt(options.tolerance * std::acos(std::min(options.coneCosine, 1.0)))
+                              : shortEdge * options.tolerance;
     // A convex piece shows everything once, at a place that moves without a jump.
     const bool tears = map.bend() == Bend::concave;
     std::unordered_map<std::uint64_t, std::uint32_t> halved;
@@ -93,8 +99,10 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
         for (const Triangle& t : open)
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-                if (apart(image[a].fromEye, image[b].fromEye) <= shortEdge * options.tolerance ||
-                    (outside(a) && outside(b)))
+                const double length = apart(image[a].fromEye, image[b].fromEye);
+                const bool seen =
+                    image[a].status == ReflectionStatus::found && image[b].status == ReflectionStatus::found;
+                if (length <= (seen ? unbent : shortEdge * options.tolerance) || (outside(a) && outside(b)))
                     continue;
                 if (!halved.try_emplace(keyOf(a, b), straight).second) continue;
                 asked.emplace_back(a, b);

@@ -1,0 +1,211 @@
+#include "app/render/MirrorWorldChrome.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <optional>
+
+#include "reflection/chrome/ReflectorPieces.h"
+#include "reflection/gl/ChromeLayer.h"
+#include "reflection/gl/Program.h"
+
+namespace app {
+
+namespace gl = reflection::gl;
+
+namespace {
+
+/// An object farther from a reflector than so many of its radii is left to the environment map: seen from all
+/// over the reflector its direction differs by less than one part in so many.
+constexpr double closeRadii = 12;
+
+city::Mesh asMesh(const LitMesh& lit) {
+    city::Mesh mesh;
+    for (const LitMesh::Corner& c : lit.corners) {
+        city::Vertex v;
+        v.position = c.position;
+        v.normal = c.normal;
+        mesh.vertices.push_back(v);
+    }
+    mesh.indices = lit.indices;
+    return mesh;
+}
+
+double distanceTo(const city::Aabb& box, const glm::dvec3& p) {
+    return glm::length(glm::max(glm::max(glm::dvec3(box.min) - p, p - glm::dvec3(box.max)), glm::dvec3(0)));
+}
+
+/// The pixels in which a ball may be seen; all where the eye is close to it.
+reflection::PixelRect pixelsOf(const reflection::EyeView& view, const glm::ivec2& size,
+                               const glm::dvec3& centre, double radius) {
+    const reflection::PixelRect all{glm::ivec2(0), size};
+    const glm::dvec3 c = glm::dmat3(view.viewFromWorld) * (centre - view.eye);
+    if (-c.z <= 1.1 * radius) return all;
+    // The box around the ball, at its nearest depth.
+    glm::dvec2 low(1e9), high(-1e9);
+    for (const double z : {c.z + radius, c.z - radius})
+        for (const double x : {c.x - radius, c.x + radius})
+            for (const double y : {c.y - radius, c.y + radius}) {
+                const glm::dvec4 clip = view.clipFromView * glm::dvec4(x, y, z, 1);
+                const glm::dvec2 p = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
+                low = glm::min(low, p), high = glm::max(high, p);
+            }
+    const auto inside = [&](const glm::dvec2& p) {
+        return glm::ivec2(glm::clamp(p, glm::dvec2(0), glm::dvec2(size)));
+    };
+    return {inside(glm::floor(low)), inside(glm::ceil(high))};
+}
+
+}  // namespace
+
+struct MirrorWorldChrome::Impl {
+    struct Object {
+        std::size_t index;
+        reflection::VirtualMesh mesh;
+        std::optional<gl::ChromeMesh> drawn;
+    };
+    struct Piece {
+        reflection::ReflectorPiece piece;
+        std::vector<Object> objects;
+        gl::Buffer vertices, indices;
+        gl::VertexArray array;
+    };
+    struct Chrome {
+        std::vector<bool> close;
+        std::vector<Piece> pieces;
+    };
+
+    const MirrorWorld& world;
+    reflection::VirtualMeshOptions options;
+    std::vector<Chrome> chrome;
+    std::vector<std::vector<float>> colours;  ///< of each object's corners
+    std::optional<gl::ChromeLayer> layer;
+    gl::Program virtualObjects, apply;
+
+    void makeGlObjects() {
+        if (layer) return;
+        layer.emplace();
+        virtualObjects = gl::Program::fromFiles({"chrome.vert", "chrome.frag"});
+        apply = gl::Program::fromFiles({"mirror_world.vert", "chrome_apply.frag"});
+        for (Chrome& c : chrome)
+            for (Piece& p : c.pieces) {
+                p.vertices = gl::Buffer::filled(std::span<const city::Vertex>(p.piece.mesh.vertices));
+                p.indices = gl::Buffer::filled(std::span<const std::uint32_t>(p.piece.mesh.indices));
+                p.array = gl::VertexArray::create();
+                p.array.buffer(0, p.vertices.name(), sizeof(city::Vertex))
+                    .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
+                    .indices(p.indices.name());
+                for (Object& o : p.objects) o.drawn.emplace(std::vector<int>{3});
+            }
+    }
+};
+
+MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options)
+    : impl_(new Impl{world, options, {}, {}, {}, {}, {}}) {
+    for (const LitMesh& m : world.objects) {
+        std::vector<float>& floats = impl_->colours.emplace_back();
+        for (const LitMesh::Corner& c : m.corners)
+            floats.insert(floats.end(), {c.colour.r, c.colour.g, c.colour.b});
+    }
+    for (const MirrorWorld::Curved& curved : world.curved) {
+        Impl::Chrome& chrome = impl_->chrome.emplace_back();
+        chrome.close.assign(world.objects.size(), false);
+        if (curved.reflector.surface.roughness > 0) continue;
+        for (std::size_t o = 0; o < world.objects.size(); ++o)
+            chrome.close[o] = distanceTo(world.objects[o].bounds(), curved.reflector.centre) <
+                              (closeRadii + 1) * curved.reflector.radius;
+        reflection::Reflector reflector = reflection::makeReflector(asMesh(curved.mesh));
+        for (reflection::ReflectorPiece& piece : reflector.pieces) {
+            if (piece.built.map.empty()) continue;
+            Impl::Piece& made = chrome.pieces.emplace_back();
+            made.piece = std::move(piece);
+            for (std::size_t o = 0; o < world.objects.size(); ++o) {
+                if (!chrome.close[o]) continue;
+                std::vector<glm::vec3> positions;
+                for (const LitMesh::Corner& c : world.objects[o].corners) positions.push_back(c.position);
+                made.objects.push_back(
+                    {o,
+                     reflection::VirtualMesh(std::move(positions), world.objects[o].indices, options),
+                     {}});
+            }
+        }
+    }
+}
+MirrorWorldChrome::~MirrorWorldChrome() = default;
+
+const std::vector<bool>& MirrorWorldChrome::closeTo(std::size_t curved) const {
+    return impl_->chrome[curved].close;
+}
+
+ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::ivec2& size,
+                                    std::uint32_t framebuffer) {
+    Impl& my = *impl_;
+    my.makeGlObjects();
+    ChromeFrame frame;
+    const glm::mat4 clip(view.clipFromView * glm::dmat4(view.viewFromWorld));
+    glFrontFace(view.mirrored() ? GL_CW : GL_CCW);
+    for (std::size_t c = 0; c < my.chrome.size(); ++c) {
+        const reflection::CurvedReflector& reflector = my.world.curved[c].reflector;
+        const reflection::PixelRect pixels = pixelsOf(view, size, reflector.centre, reflector.radius);
+        if (my.chrome[c].pieces.empty() || pixels.size().x <= 0 || pixels.size().y <= 0) continue;
+        reflection::VirtualMeshOptions options = my.options;
+        const glm::dvec3 towards = reflector.centre - view.eye;
+        const double distance = glm::length(towards);
+        if (distance > 1.1 * reflector.radius) {
+            const double sine = reflector.radius / distance;
+            options.towards = towards / distance;
+            options.coneCosine = std::sqrt(1 - sine * sine);
+        }
+        for (Impl::Piece& p : my.chrome[c].pieces) {
+            ++frame.jobs;
+            const auto start = std::chrono::steady_clock::now();
+            for (Impl::Object& o : p.objects) {
+                const reflection::VirtualCounts counts =
+                    o.mesh.update(p.piece.built.map, view.eye, glm::dmat4(1), options);
+                ++frame.meshes;
+                frame.vertices += o.mesh.vertices().size();
+                frame.searched += counts.searched;
+                frame.lookups += counts.lookups;
+                frame.triangles += o.mesh.indices().size() / 3;
+            }
+            frame.searchMilliseconds +=
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+            my.layer->begin(size, pixels);
+            // Mirrored once: what is seen of an object's front has turned round.
+            glDisable(GL_CULL_FACE);
+            glDisable(GL_CLIP_DISTANCE0);
+            glDisable(GL_CLIP_DISTANCE1);
+            my.virtualObjects.set("clipFromVirtual", clip);
+            my.virtualObjects.use();
+            for (Impl::Object& o : p.objects) {
+                o.drawn->upload(o.mesh, my.colours[o.index]);
+                o.drawn->draw();
+            }
+            glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+            glDepthMask(GL_FALSE);
+            glEnable(GL_BLEND);
+            glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+            glEnable(GL_CULL_FACE);
+            glCullFace(GL_BACK);
+            my.apply.set("eye", glm::vec3(view.eye));
+            my.apply.set("clipFromRelative", clip);
+            my.apply.set("glass", glm::vec4(0, 0, 0, 1));
+            my.apply.set("reflectance", reflector.surface.reflectance);
+            my.apply.set("tint", my.world.curved[c].tint);
+            my.apply.use();
+            glBindTextureUnit(11, my.layer->colour());
+            p.array.bind();
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(p.piece.mesh.indices.size()), GL_UNSIGNED_INT,
+                           nullptr);
+            glDisable(GL_BLEND);
+            glDepthMask(GL_TRUE);
+        }
+    }
+    glDisable(GL_SCISSOR_TEST);
+    return frame;
+}
+
+}  // namespace app

@@ -1,0 +1,66 @@
+#include "reflection/gl/ChromeLayer.h"
+
+#include <epoxy/gl.h>
+
+#include <array>
+
+namespace reflection::gl {
+
+void ChromeLayer::begin(const glm::ivec2& viewSize, const PixelRect& rectangle) {
+    if (size_.x < viewSize.x || size_.y < viewSize.y) {
+        size_ = glm::max(size_, viewSize);
+        colour_ = Texture::image2D(GL_RGBA16F, size_.x, size_.y);
+        colour_.filter(GL_NEAREST, GL_NEAREST).wrap(GL_CLAMP_TO_EDGE);
+        depth_ = Texture::image2D(GL_DEPTH_COMPONENT32F, size_.x, size_.y);
+        framebuffer_ = Framebuffer::create();
+        framebuffer_.attach(GL_COLOR_ATTACHMENT0, colour_.name()).attach(GL_DEPTH_ATTACHMENT, depth_.name());
+        framebuffer_.requireComplete("virtual objects in chrome");
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glViewport(0, 0, viewSize.x, viewSize.y);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(rectangle.low.x, rectangle.low.y, rectangle.size().x, rectangle.size().y);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_BLEND);
+    constexpr std::array<float, 4> nothing{};
+    constexpr float far = 0;
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &far);
+}
+
+ChromeMesh::ChromeMesh(std::vector<int> attributes) {
+    for (const int floats : attributes) stride_ += static_cast<std::size_t>(floats);
+    array_.buffer(0, places_.name(), sizeof(VirtualVertex))
+        .attribute(0, 0, 3, GL_FLOAT, false, offsetof(VirtualVertex, fromEye))
+        .buffer(1, values_.name(), static_cast<GLsizei>(stride_ * sizeof(float)))
+        .indices(indices_.name());
+    GLuint location = 1, offset = 0;
+    for (const int floats : attributes) {
+        array_.attribute(location++, 1, floats, GL_FLOAT, false, offset);
+        offset += static_cast<GLuint>(floats) * sizeof(float);
+    }
+}
+
+void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertices) {
+    all_.assign(ofVertices.begin(), ofVertices.end());
+    for (const MiddleVertex& m : mesh.middles())
+        for (std::size_t k = 0; k < stride_; ++k) {
+            const float a = all_[m.a * stride_ + k], b = all_[m.b * stride_ + k];
+            all_.push_back(0.5f * (a + b));
+        }
+    places_.replace(mesh.vertices());
+    values_.replace(std::span<const float>(all_));
+    indices_.replace(mesh.indices());
+    count_ = static_cast<GLsizei>(mesh.indices().size());
+}
+
+void ChromeMesh::draw() const {
+    if (count_ == 0) return;
+    array_.bind();
+    glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace reflection::gl
