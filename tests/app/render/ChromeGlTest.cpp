@@ -4,12 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "WritePng.h"
 #include "app/display/OffscreenContext.h"
 #include "app/mirrors/LitShapes.h"
 #include "app/mirrors/MirrorTruth.h"
 #include "app/render/MirrorStage.h"
 #include "reflection/truth/ImageError.h"
+#include "tests/app/render/WritePng.h"
 
 namespace app {
 namespace {
