@@ -1,6 +1,7 @@
 #include "app/commands/MirrorBench.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "app/display/OffscreenTarget.h"
@@ -40,14 +41,6 @@ reflection::MirrorPassOptions eightBits() {
     return options;
 }
 
-double frameTime(MirrorStage& stage, const TreeSettings& settings) {
-    finishDrawing();
-    const Stopwatch watch;
-    stage.draw(settings);
-    finishDrawing();
-    return watch.elapsed();
-}
-
 Timing timed(MirrorStage& stage, const TreeSettings& settings, int frames) {
     stage.draw(settings);
     std::vector<double> ms;
@@ -74,6 +67,23 @@ struct Variant {
 };
 
 }  // namespace
+
+double frameTime(MirrorStage& stage, const TreeSettings& settings) {
+    finishDrawing();
+    const Stopwatch watch;
+    stage.draw(settings);
+    finishDrawing();
+    return watch.elapsed();
+}
+
+std::string fileName(const std::string& text) {
+    std::string name;
+    for (char c : text) {
+        if (c == ' ') name += '_';
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.') name += c;
+    }
+    return name;
+}
 
 void saveRadiance(const std::vector<glm::vec3>& radiance, const glm::ivec2& size,
                   const std::filesystem::path& folder, const std::string& name) {
@@ -163,136 +173,7 @@ MirrorRows tableOne(const MirrorWorld& world, const PaperRow* paper, const Mirro
         }
         out.rows.push_back(std::move(row));
         if (options.save) {
-            std::string name = world.name + " " + v.name;
-            std::replace(name.begin(), name.end(), ' ', '_');
-            name.erase(std::remove(name.begin(), name.end(), ','), name.end());
-            saveRadiance(stage.read(), options.size, *options.save, name);
-        }
-        if (options.advance) options.advance();
-    }
-    return out;
-}
-
-MirrorRows culling(const MirrorWorld& given, const MirrorBenchOptions& options, bool eachEconomy) {
-    MirrorWorld world = given;
-    world.depth = 2;
-    MirrorRows out;
-    out.title = world.name + ", depth 2: what culling is worth";
-    out.table.push_back({"drawn", "maps", "faces", "triangles", "texels", "frame, ms", "all / this",
-                         "reflections alone", "PSNR, dB"});
-    struct Case {
-        std::string name;
-        Economies economies;
-        CurvedMaps curved;
-        glm::ivec2 mapSize;
-        bool together = false;  ///< maps of a level side by side
-        bool plain = false;     ///< without any reflection
-    };
-    const CurvedMaps first = world.curved.empty() ? CurvedMaps::none : CurvedMaps::viewDependent;
-    std::vector<std::vector<Case>> groups;
-    Economies all;
-    all.cap = all.cutOff = all.detail = false;  // these change the picture
-    const CurvedMaps second = world.curved.empty() ? CurvedMaps::none : CurvedMaps::cube;
-    const glm::ivec2 paperMap(256, 256), pictureMap(0, 0);
-    groups.push_back({{"256 x 256, all", Economies::paper(), first, paperMap},
-                      {"256 x 256, culled", all, first, paperMap},
-                      {"256 x 256, culled, together", all, first, paperMap, true}});
-    if (first != second)
-        groups.push_back({{"256 x 256, cubes, all", Economies::paper(), second, paperMap},
-                          {"256 x 256, cubes, culled", all, second, paperMap},
-                          {"256 x 256, cubes, culled, together", all, second, paperMap, true}});
-    groups.push_back({{"picture's texels, all", Economies::paper(), second, pictureMap},
-                      {"picture's texels, culled", all, second, pictureMap},
-                      {"picture's texels, culled, together", all, second, pictureMap, true}});
-    if (eachEconomy) {
-        Economies more = all;
-        more.cap = more.cutOff = true;
-        groups.front().push_back({"with cap of 64 and cut-off", more, first, paperMap});
-        for (const auto& [name, member] : {std::pair{"without off screen", &Economies::offScreen},
-                                           std::pair{"without narrow", &Economies::narrow},
-                                           std::pair{"without scissor", &Economies::scissor},
-                                           std::pair{"without resolution", &Economies::resolution},
-                                           std::pair{"without occlusion", &Economies::occlusion},
-                                           std::pair{"without share", &Economies::share}}) {
-            Economies less = all;
-            less.*member = false;
-            groups.front().push_back({name, less, first, paperMap});
-        }
-    }
-    const auto settingsOf = [&](const Case& c) {
-        TreeSettings settings = paperSettings(world, c.economies);
-        settings.mapSize = c.mapSize;
-        if (c.economies.cap) settings.mostMaps = 64;
-        if (c.plain) settings.depth = 0;
-        return settings;
-    };
-    for (std::vector<Case>& group : groups)
-        group.push_back({"no reflections", all, group[0].curved, paperMap, false, true});
-    for (const std::vector<Case>& group : groups) {
-        std::vector<std::unique_ptr<MirrorStage>> stages;
-        std::vector<std::vector<double>> times(group.size());
-        std::vector<std::uint64_t> triangles(group.size());
-        // Interleaved; the unculled one takes seconds on a street of windows.
-        int rounds = 7;
-        for (int round = 0; round <= rounds; ++round)
-            for (std::size_t i = 0; i < group.size() && !options.stop(); ++i) {
-                if (round == 0) {
-                    reflection::MirrorPassOptions how = eightBits();
-                    how.together = group[i].together;
-                    stages.push_back(
-                        std::make_unique<MirrorStage>(world, options.size, group[i].curved, how));
-                }
-                if (i >= stages.size()) continue;
-                const std::uint64_t before = stages[i]->trianglesDrawn();
-                const double ms = frameTime(*stages[i], settingsOf(group[i]));
-                triangles[i] = stages[i]->trianglesDrawn() - before;
-                if (round > 0) times[i].push_back(ms);
-                if (round == 0 && ms > 500) rounds = 3;
-            }
-        if (options.stop()) return out;
-        std::vector<glm::vec3> reference;
-        for (std::size_t i = 0; i < group.size(); ++i) {
-            const ReflectionTree& tree = stages[i]->draw(settingsOf(group[i]));
-            const std::vector<glm::vec3> image = stages[i]->read();
-            if (i == 0) reference = image;
-            const double psnr =
-                i == 0 ? std::numeric_limits<double>::quiet_NaN() : psnrOf(image, reference, options.size);
-            std::vector<double> ratio;
-            for (std::size_t k = 0; k < times[i].size(); ++k) ratio.push_back(times[0][k] / times[i][k]);
-            const double gain = timingOf(ratio).median;
-            const double plain = timingOf(times.back()).median;
-            const double alone =
-                (timingOf(times[0]).median - plain) / std::max(timingOf(times[i]).median - plain, 1e-3);
-            const reflection::TreeCounters& c = tree.counters;
-            out.table.push_back({group[i].name, std::to_string(c.generated()), std::to_string(c.faces),
-                                 std::to_string(triangles[i]), std::to_string(c.texels),
-                                 fixed(timingOf(times[i]).median, 2), i == 0 ? "1" : fixed(gain, 2),
-                                 fixed(psnr, 1)});
-            out.rows.push_back({{"part", "culling"},
-                                {"scene", world.name},
-                                {"method", group[i].name},
-                                {"depth", world.depth},
-                                {"generated", c.generated()},
-                                {"environment_faces", c.faces},
-                                {"texels", c.texels},
-                                {"triangles_drawn", triangles[i]},
-                                {"back_facing", c.backFacing},
-                                {"off_screen", c.offScreen},
-                                {"occluded", c.occluded},
-                                {"shared", c.shared},
-                                {"objects", c.objects},
-                                {"objects_culled", c.objectsCulled},
-                                {"frame_ms", toJson(timingOf(times[i]))},
-                                {"ratio_to_all", gain},
-                                {"ratio_to_all_reflections_alone", alone},
-                                {"psnr_db", psnr}});
-        }
-        if (options.save) {
-            std::string name = group[1].name + " " + world.name;
-            name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == ',' || c == '\''; }),
-                       name.end());
-            std::replace(name.begin(), name.end(), ' ', '_');
-            saveRadiance(stages[1]->read(), options.size, *options.save, name);
+            saveRadiance(stage.read(), options.size, *options.save, fileName(world.name + " " + v.name));
         }
         if (options.advance) options.advance();
     }
@@ -335,10 +216,7 @@ MirrorRows curvedError(const MirrorWorld& given, const MirrorBenchOptions& optio
                             {"psnr_db", whole}});
     }
     if (options.save) {
-        std::string name = world.name + " traced";
-        std::replace(name.begin(), name.end(), ' ', '_');
-        name.erase(std::remove(name.begin(), name.end(), ','), name.end());
-        saveRadiance(truth.radiance, options.size, *options.save, name);
+        saveRadiance(truth.radiance, options.size, *options.save, fileName(world.name + " traced"));
     }
     if (options.advance) options.advance();
     return out;

@@ -18,7 +18,8 @@ struct MirrorStage::Impl {
     Impl(const MirrorWorld& w, glm::ivec2 s, reflection::CurvedMaps c,
          const reflection::MirrorPassOptions& options)
         : world(w), size(s), curved(c), arrays(w), renderer(w, c, options.nearness), pass(options) {
-        colour = gl::Texture::image2D(GL_RGBA16F, size.x, size.y);
+        const bool bytes = options.format == reflection::MirrorFormat::rgba8;
+        colour = gl::Texture::image2D(bytes ? GL_RGBA8 : GL_RGBA16F, size.x, size.y);
         depth = gl::Texture::image2D(GL_DEPTH32F_STENCIL8, size.x, size.y);
         framebuffer = gl::Framebuffer::create();
         framebuffer.attach(GL_COLOR_ATTACHMENT0, colour.name())

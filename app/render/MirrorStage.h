@@ -15,6 +15,7 @@ namespace app {
 /// call.
 class MirrorStage {
   public:
+    /// The picture has bytes where the maps do, as the paper's 32 bit pixels; else half floats.
     MirrorStage(const MirrorWorld& world, glm::ivec2 size, reflection::CurvedMaps curved,
                 const reflection::MirrorPassOptions& options = {});
     ~MirrorStage();

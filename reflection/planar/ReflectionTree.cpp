@@ -31,9 +31,9 @@ ReflectionTree reflectionTree(std::span<const TreeView> views, const ReflectionS
                               const TreeSettings& settings) {
     ReflectionTree tree;
     const bool sound = settings.depth >= 0 && settings.depth <= 32 && settings.levelScale > 0 &&
-                       settings.levelScale <= 1 && settings.faceSize > 0 && settings.mapSize.x >= 0 &&
-                       settings.mapSize.y >= 0 && settings.curvedHalfAngle > 0 &&
-                       settings.curvedHalfAngle < 1.55 &&
+                       settings.levelScale <= 1 && settings.faceSize > 0 && settings.texelsPerPixel > 0 &&
+                       settings.texelsPerPixel <= 64 && settings.mapSize.x >= 0 && settings.mapSize.y >= 0 &&
+                       settings.curvedHalfAngle > 0 && settings.curvedHalfAngle < 1.55 &&
                        std::all_of(views.begin(), views.end(),
                                    [](const TreeView& v) { return v.size.x > 0 && v.size.y > 0; });
     if (!sound) {

@@ -63,9 +63,9 @@ TreeBuilder::TreeBuilder(const ReflectionScene& scene, const TreeSettings& setti
 
 glm::ivec2 TreeBuilder::gridOf(const ReflectionRoot& root) const {
     if (settings_.mapSize.x <= 0 || settings_.mapSize.y <= 0) return root.size;
-    // More than twice an image's pixels are worth nothing; fewer than given cost up to 28 dB in curved
-    // mirrors.
-    return settings_.economies.resolution ? glm::min(settings_.mapSize, 2 * root.size) : settings_.mapSize;
+    if (!settings_.economies.resolution) return settings_.mapSize;
+    const glm::ivec2 most(glm::ceil(glm::dvec2(root.size) * settings_.texelsPerPixel));
+    return glm::min(settings_.mapSize, most);
 }
 
 bool TreeBuilder::dark(const glm::vec3& throughput) const {
