@@ -119,7 +119,14 @@ MirrorRows tableOne(const MirrorWorld& world, const PaperRow* paper, const Mirro
         settings.refreshCurved = v.refresh;
         const Timing time = timed(stage, settings, 7);
         settings.curved = v.curved;
-        const reflection::TreeCounters counters = stage.draw(settings).counters;
+        const ReflectionTree& tree = stage.draw(settings);
+        const reflection::TreeCounters counters = tree.counters;
+        // Which maps the environment maps show in each other, as in the paper's figure 6.
+        std::size_t fresh = 0, old = 0;
+        for (const reflection::EnvironmentJob& job : tree.environments) {
+            fresh += static_cast<std::size_t>(std::ranges::count(job.others, reflection::MapAge::thisFrame));
+            old += static_cast<std::size_t>(std::ranges::count(job.others, reflection::MapAge::lastFrame));
+        }
         const reflection::MirrorPassCounters held = stage.pass().counters();
         const reflection::MapMemory memory =
             reflection::paperMemory(settings, world.mirrors.size(), world.curved.size());
@@ -156,7 +163,10 @@ MirrorRows tableOne(const MirrorWorld& world, const PaperRow* paper, const Mirro
                                    {"curved", world.curved.size()},
                                    {"triangles", world.triangles()},
                                    {"generated", counters.generated()},
+                                   {"in_environments", counters.planarInEnvironments},
                                    {"environment_faces", counters.faces},
+                                   {"interreflections_of_this_frame", fresh},
+                                   {"interreflections_of_last_frame", old},
                                    {"map_bytes", memory.used},
                                    {"map_bytes_traditional", memory.traditional},
                                    {"map_bytes_held", held.mapBytes + held.environmentBytes},

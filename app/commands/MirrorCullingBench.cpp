@@ -165,6 +165,7 @@ MirrorRows culling(const MirrorWorld& world, const MirrorBenchOptions& options, 
             }
         std::vector<glm::vec3> reference;
         for (std::size_t i = 0; i < n; ++i) {
+            stages[i]->pass().resetCounters();
             const reflection::TreeCounters c = stages[i]->draw(settingsOf(group, group.cases[i])).counters;
             const std::vector<glm::vec3> image = stages[i]->read();
             if (i == 0) reference = image;
@@ -189,6 +190,8 @@ MirrorRows culling(const MirrorWorld& world, const MirrorBenchOptions& options, 
                                 {"depth", 2},
                                 {"generated", c.generated()},
                                 {"environment_faces", c.faces},
+                                {"environments_unseen", c.environmentsUnseen},
+                                {"filtered", stages[i]->pass().counters().filtered},
                                 {"texels", c.texels},
                                 {"triangles_drawn", triangles[i]},
                                 {"back_facing", c.backFacing},

@@ -39,7 +39,7 @@ void MirrorMaps::look(const ReflectionTree& tree) {
 }
 
 bool MirrorMaps::rough(const ReflectionNode& node) const {
-    return options_.gloss && node.roughness > 0 && node.view.projection == Projection::perspective;
+    return node.roughness > 0 && node.view.projection == Projection::perspective;
 }
 
 /// Standard deviation, in texels; a curved reflector's at its map's edge, where directions lie densest: its

@@ -284,22 +284,8 @@ void MirrorPass::drawReflections(const ReflectionTree& tree, std::uint32_t root,
     my.count();
 }
 
-std::uint32_t MirrorPass::environment(std::size_t curved) const {
-    return curved < impl_->environments.size() ? impl_->environments[curved].name() : 0;
-}
-
 void MirrorPass::trim(const ReflectionTree& tree) {
     impl_->maps.keep(tree.levelSize.size());
-    impl_->count();
-}
-
-void MirrorPass::release() {
-    impl_->maps.keep(0);
-    impl_->environments.clear();
-    impl_->spare = gl::Texture();
-    impl_->spareDepth = gl::Texture();
-    impl_->spareTarget = gl::Framebuffer();
-    impl_->faceSize = 0;
     impl_->count();
 }
 

@@ -16,11 +16,9 @@ enum class MirrorFormat : std::uint8_t {
 
 struct MirrorPassOptions {
     MirrorFormat format = MirrorFormat::r11g11b10f;
-    /// Rough mirrors are filtered; false: all mirrors are drawn as smooth ones, without distance or blur.
-    bool gloss = true;
     /// Rough mirrors are filtered once for each texel of their maps and then looked up like smooth ones
-    /// (MirrorMap::glossed), planar ones; false: for each of the pixels that they cover. Coarser where a map has fewer
-    /// texels.
+    /// (MirrorMap::glossed), planar ones; false: for each of the pixels that they cover. Coarser where a map
+    /// has fewer texels.
     bool glossPerTexel = false;
     /// Maps of a level side by side in one texture, the deepest level first (AtlasGroup): a change of target
     /// a level in place of two a map, for the memory of all maps of a frame. False: the paper's order.
@@ -77,14 +75,8 @@ class MirrorPass {
     void drawReflections(const ReflectionTree& tree, std::uint32_t root, MirrorScene& scene,
                          const MirrorTarget& target);
 
-    /// GL name of a curved reflector's complete map: GL_TEXTURE_CUBE_MAP, or GL_TEXTURE_2D_ARRAY of two
-    /// paraboloids; 0: none yet.
-    std::uint32_t environment(std::size_t curved) const;
-
     /// Frees levels that the tree does not use; an empty tree keeps no texture but environment maps.
     void trim(const ReflectionTree& tree);
-    /// Frees everything.
-    void release();
 
     const MirrorPassCounters& counters() const;
     void resetCounters();

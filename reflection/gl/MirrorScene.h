@@ -23,7 +23,7 @@ struct MirrorTarget {
 struct MirrorMap {
     std::uint32_t colour = 0;  ///< GL_TEXTURE_2D, linear filter, clamped. Radiance as the scene drew it
     /// GL_TEXTURE_2D RGBA16F with `blurLevels` mipmap levels of smooth blur, each of half the texels:
-    /// radiance, and in alpha the share of the way that lies behind the glass (see glossAngleSeen). 0: the
+    /// radiance, and in alpha the share of the way that lies behind the glass (see glossAngle). 0: the
     /// mirrors are smooth. Sampled by `mirrorGloss` of data/shaders/mirror_map.glsl.
     std::uint32_t blurred = 0;
     /// GL_TEXTURE_2D of `blurred`'s coordinates, linear filter: what the mirrors show, where their roughness

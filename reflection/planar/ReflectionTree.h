@@ -89,7 +89,6 @@ struct ReflectionNode {
     std::uint32_t firstMirror = 0, mirrorCount = 0;  ///< see ReflectionTree::mirrorsOf; 0: curved
     std::uint32_t curved = none;                     ///< view-dependent maps: of which reflector
     std::uint32_t hiddenCurved = none;  ///< not to be drawn here: the one in whose centre the eye is
-    std::uint32_t children = 0;         ///< directly below
 
     /// The eye behind the glass with the whole image's projection and its plain near plane.
     EyeView view;

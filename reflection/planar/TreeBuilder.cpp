@@ -165,7 +165,6 @@ void TreeBuilder::addEnvironments() {
             image.level = 1;
             image.throughput = reflector.surface.reflectance;
             image.pixelsPerNdc = area(root.size) / 4;
-            image.hiddenCurved = c;
             image.inCurved = true;
             image.grid = gridOf(root);
             image.coarser = settings_.economies.detail ? 1 : 0;
@@ -408,7 +407,6 @@ void TreeBuilder::take(Candidate&& candidate) {
     node.mirrorCount = static_cast<std::uint32_t>(candidate.mirrors.size());
     tree_.mirrors.insert(tree_.mirrors.end(), candidate.mirrors.begin(), candidate.mirrors.end());
     listObjects(node.view, node.frustum, node.firstObject, node.objectCount);
-    if (node.parent != ReflectionNode::none) ++tree_.nodes[node.parent].children;
 
     Image image;
     image.root = node.root;
