@@ -27,6 +27,17 @@ double area(const glm::ivec2& size) {
     return static_cast<double>(size.x) * size.y;
 }
 
+/// Of a ball's image, in units of ndc, whole image 4: exact for a ball before the eye, though the image's
+/// edges may cut it; the whole image for one that the eye's plane cuts. Its silhouette is an ellipse: see
+/// Mara & McGuire, 2D polyhedral bounds of a clipped, perspective-projected 3D sphere (2013).
+double projectedArea(const CurvedReflector& ball, const EyeView& view) {
+    const glm::dvec3 centre = view.viewFromWorld * (ball.centre - view.eye);
+    const double r2 = ball.radius * ball.radius, beyond = centre.z * centre.z - r2;
+    if (!(centre.z < 0 && beyond > 0)) return 4;
+    const double flat = pi * r2 * std::sqrt((glm::dot(centre, centre) - r2) / beyond) / beyond;
+    return std::min(4.0, flat * view.clipFromView[0][0] * view.clipFromView[1][1]);
+}
+
 /// Whether one convex box hides all corners, and so all between them: no corner's line of sight, from the
 /// glass on, misses it. `relative`: the polygon around the eye.
 bool hides(const city::Aabb& box, const glm::dvec3& eye, const HalfSpace* glass,
@@ -112,7 +123,8 @@ void TreeBuilder::addView(const TreeView& given) {
     image.root = index;
     image.view = &root.view;
     image.frustum = &root.frustum;
-    image.pixelsPerNdc = area(given.size) / 4;
+    image.pixels = area(given.size);
+    image.pixelsPerNdc = image.pixels / 4;
     image.grid = gridOf(root);
     meet(image);
 }
@@ -164,7 +176,8 @@ void TreeBuilder::addEnvironments() {
             image.frustum = &root.frustum;
             image.level = 1;
             image.throughput = reflector.surface.reflectance;
-            image.pixelsPerNdc = area(root.size) / 4;
+            image.pixels = area(root.size);
+            image.pixelsPerNdc = image.pixels / 4;
             image.inCurved = true;
             image.grid = gridOf(root);
             image.coarser = settings_.economies.detail ? 1 : 0;
@@ -258,7 +271,7 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
     node.level = image.level;
     node.view = seen.mirrored;
     node.glass = HalfSpace(plane.normal(), plane.signedDistance(seen.mirrored.eye));
-    node.pixels = seen.portal.area * image.pixelsPerNdc;
+    node.pixels = std::min(seen.portal.area * image.pixelsPerNdc, image.pixels);
     node.coarser = economies.detail ? image.coarser + 1 : 0;
     glm::vec3 reflectance(0);
     double roughness = 0, stray = 0, own = 0;
@@ -325,6 +338,7 @@ void TreeBuilder::addMirror(const Image& image, Seen& seen) {
         node.obliqueClipFromView = obliqueNear(drawn, plane).clipFromView;
     }
     candidate.mirrors = std::move(seen.mirrors);
+    candidate.inner = {image.grid, image.pixelsPerNdc, image.inCurved};
     push(std::move(candidate));
 }
 
@@ -356,20 +370,18 @@ void TreeBuilder::meetCurved(const Image& image) {
         node.view = perspectiveView(reflector.centre, image.view->eye, 2 * settings_.curvedHalfAngle, 1,
                                     0.02 * reflector.radius);
         if (settings_.economies.offScreen) node.frustum = frustumOf(node.view);
-        const double distance = std::max(glm::length(reflector.centre - image.view->eye), reflector.radius);
-        const double scale = image.view->clipFromView[0][0] * image.view->clipFromView[1][1];
-        const double ndc =
-            std::min(4.0, pi * reflector.radius * reflector.radius * scale / (distance * distance));
-        node.pixels = ndc * image.pixelsPerNdc;
+        const double ball = projectedArea(reflector, *image.view) * image.pixelsPerNdc;
+        node.pixels = std::min(ball, image.pixels);
         node.resolution = whole;
         if (settings_.economies.resolution) {
-            const double diameter =
-                std::sqrt(node.pixels * 4 / pi) * std::pow(settings_.levelScale, image.level);
+            // Of the whole ball, though a mirror may show a part of it.
+            const double diameter = std::sqrt(ball * 4 / pi) * std::pow(settings_.levelScale, image.level);
             const int side = std::max(8, static_cast<int>(std::ceil(sphereTexels * diameter)));
             node.resolution = glm::min(node.resolution, glm::ivec2(side));
         }
         node.scissor = {glm::ivec2(0), node.resolution};
         node.clipFromView = node.obliqueClipFromView = node.view.clipFromView;
+        candidate.inner = {node.resolution, ball / 4, true};
         push(std::move(candidate));
     }
 }
@@ -415,24 +427,13 @@ void TreeBuilder::take(Candidate&& candidate) {
     image.frustum = &node.frustum;
     image.level = node.level + 1;
     image.throughput = node.throughput;
+    image.pixels = node.pixels;
     image.hiddenCurved = node.hiddenCurved;
     image.coarser = node.coarser;
-    // A mirror in a mirror in a ball is seen in the ball.
-    image.inCurved = tree_.roots[node.root].isEnvironment();
-    for (std::uint32_t up = index; up != ReflectionNode::none && !image.inCurved; up = tree_.nodes[up].parent)
-        image.inCurved = !tree_.nodes[up].planar();
-    if (node.planar()) {
-        image.glass = &node.glass;
-        const ReflectionRoot& root = tree_.roots[node.root];
-        // A mirror view has the pixels of the image in which the mirror is met.
-        std::uint32_t up = node.parent;
-        while (up != ReflectionNode::none && tree_.nodes[up].planar()) up = tree_.nodes[up].parent;
-        image.grid = up != ReflectionNode::none ? tree_.nodes[up].resolution : gridOf(root);
-        image.pixelsPerNdc = (up != ReflectionNode::none ? tree_.nodes[up].pixels : area(root.size)) / 4;
-    } else {
-        image.grid = node.resolution;
-        image.pixelsPerNdc = node.pixels / 4;
-    }
+    image.grid = candidate.inner.grid;
+    image.pixelsPerNdc = candidate.inner.pixelsPerNdc;
+    image.inCurved = candidate.inner.inCurved;
+    if (node.planar()) image.glass = &node.glass;
     meet(image);
 }
 

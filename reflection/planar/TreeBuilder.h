@@ -25,6 +25,12 @@ class TreeBuilder {
     struct Candidate {
         ReflectionNode node;
         std::vector<std::uint32_t> mirrors;
+        /// As an Image. A mirror view has the pixels of the image in which the mirror is met.
+        struct Inner {
+            glm::ivec2 grid{0};
+            double pixelsPerNdc = 0;
+            bool inCurved = false;
+        } inner;
         double priority = 0;
         std::uint64_t sequence = 0;
         bool operator<(const Candidate& b) const {
@@ -39,6 +45,7 @@ class TreeBuilder {
         const HalfSpace* glass = nullptr;  ///< null before all mirrors
         std::uint32_t level = 0;           ///< of the maps of what is met
         glm::vec3 throughput{1};
+        double pixels = 0;        ///< of the caller's view that this image covers at most
         double pixelsPerNdc = 0;  ///< pixels in the caller's view of one unit of this image's area
         std::uint32_t hiddenCurved = ReflectionNode::none;
         glm::ivec2 grid{0};  ///< texels of a mirror view's whole image
