@@ -112,6 +112,9 @@ int benchGovernor(const Options& options) {
     settings.gpuMapBytes = options.gpuMapBytes();
     settings.renderer = stage.context.renderer();
     settings.quiet = options.quiet;
+    CityMirrors mirrors = cityMirrors(stage.scene, options);
+    settings.mirrors = &mirrors;
+    if (mirrors.any()) stage.renderer.setGlass(stage.scene.glass.fronts);
     const Stopwatch calibrating;
     const Calibration calibration =
         calibrate(stage.scene, stage.scene.lighting, stage.reflections, stage.renderer, settings);
@@ -130,7 +133,7 @@ int benchGovernor(const Options& options) {
     reflecting.gpuMapBytes = options.gpuMapBytes();
     const auto makePlay = [&](SceneRenderer& renderer) {
         return std::make_unique<GovernorPlay>(stage.scene, stage.reflections, renderer, manyCars,
-                                              options.seed, options.resolution, reflecting);
+                                              options.seed, options.resolution, reflecting, mirrors);
     };
     const auto governed = makePlay(stage.renderer), unchanged = makePlay(controlRenderer),
                settled = makePlay(controlRenderer);
@@ -192,6 +195,7 @@ int benchGovernor(const Options& options) {
                      {"visible", phase.visible},
                      {"width", options.resolution.x},
                      {"height", options.resolution.y},
+                     {"windows", mirrors.any()},
                      {"budget_ms", budget},
                      {"frame_ms", toJson(timingOf(frameMs))},
                      {"frame_ms_95", quantile(frameMs, 0.95)},

@@ -74,12 +74,19 @@ std::vector<Rung> withJumps(const DetailBench& bench, std::span<const DetailBenc
     return rungs;
 }
 
-Detail finestDetail() {
-    return {detailOf(Quality::high), {}};
+/// What mirrors flatly, where anything does.
+const CityMirrors* mirrorsOf(const CalibrationOptions& options) {
+    return options.mirrors != nullptr && options.mirrors->any() ? options.mirrors : nullptr;
+}
+
+Detail finestDetail(const CityMirrors* mirrors) {
+    Detail finest{detailOf(Quality::high), {}};
+    if (mirrors != nullptr) finest.mirrors = mirrors->most();
+    return finest;
 }
 
 /// Each knob turned down alone, fine to coarse.
-std::vector<Trial> trialsFor(Antialiasing antialiasing) {
+std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirrors) {
     std::vector<Trial> trials;
     const auto add = [&](Knob knob, std::initializer_list<double> values) {
         for (const double value : values) trials.push_back({knob, value, 0, 0});
@@ -96,6 +103,13 @@ std::vector<Trial> trialsFor(Antialiasing antialiasing) {
     // budget (medians of 11.7 to 13.8 ms of 16.1).
     add(Knob::scale, {0.92, 0.85, 0.77, 0.7, 0.65, 0.6, 0.55, 0.5, 0.42, 0.35});
     if (antialiasing == Antialiasing::fxaa) add(Knob::antialiasing, {0.5, 0});
+    if (mirrors == nullptr) return trials;
+    // One reflection less is one picture less: from half of them to none.
+    const MirrorDetail most = mirrors->most();
+    add(Knob::mirrorTexels, {0.7, 0.5});
+    if (most.depth > 1) add(Knob::mirrorDepth, {1});
+    for (const double maps : {4, 2, 1, 0})
+        if (maps < most.maps) trials.push_back({Knob::mirrorMaps, maps, 0, 0});
     return trials;
 }
 
@@ -108,6 +122,10 @@ std::string keyOf(const Scene& scene, const CalibrationOptions& options) {
         << std::dec << "; " << options.resolution.x << "x" << options.resolution.y << "; antialiasing "
         << static_cast<int>(options.antialiasing) << "; maps on " << (gpu ? "gpu" : "cpu") << "; seed "
         << options.seed;
+    // Cities in which nothing mirrors flatly have one calibration for all weathers.
+    if (const CityMirrors* mirrors = mirrorsOf(options))
+        key << "; windows " << mirrors->most().maps << " in a row " << mirrors->most().depth
+            << (mirrors->wet() ? "; wet" : "");
     return key.str();
 }
 
@@ -150,7 +168,9 @@ std::optional<DetailLadder> ladderFromText(const std::string& text, const std::s
         for (const nlohmann::json& from : document.at("rungs")) {
             Rung& rung = rungs.emplace_back();
             for (std::size_t k = 0; k < knobNames.size(); ++k) {
-                const double value = from.at("detail").at(std::string(knobNames[k])).get<double>();
+                // What is not named is as fine as it gets.
+                const double value = from.at("detail").value(std::string(knobNames[k]),
+                                                             valueOf(rung.detail, static_cast<Knob>(k)));
                 if (!std::isfinite(value) || value < 0) return std::nullopt;
                 valueOf(rung.detail, static_cast<Knob>(k)) = value;
             }
@@ -188,7 +208,7 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
         }
     }
 
-    std::vector<Trial> trials = trialsFor(options.antialiasing);
+    std::vector<Trial> trials = trialsFor(options.antialiasing, mirrorsOf(options));
     const std::vector<Clip> clips = recordClips(scene, lighting, options);
     // The rungs are about as many as the trials, not known before.
     const std::size_t steps = 2 * DetailBench::steps(clips.size(), 1 + trials.size());
@@ -203,10 +223,11 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
     ReflectionSettings reflecting;
     reflecting.mapsOn = options.mapsOn;
     reflecting.gpuMapBytes = options.gpuMapBytes;
-    DetailBench bench(scene, prepared, renderer, reflecting, clips);
+    DetailBench bench(scene, prepared, renderer, reflecting, clips, options.mirrors);
 
-    std::vector<Detail> alone{finestDetail()};
-    for (const Trial& trial : trials) valueOf(alone.emplace_back(finestDetail()), trial.knob) = trial.value;
+    const Detail full = finestDetail(mirrorsOf(options));
+    std::vector<Detail> alone{full};
+    for (const Trial& trial : trials) valueOf(alone.emplace_back(full), trial.knob) = trial.value;
     const std::vector<DetailBench::Measured> tried = bench.measure(alone, goOn);
     if (tried.empty()) return calibration;
     const Rung& finest = tried.front().rung;
@@ -215,7 +236,7 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
         trials[i].lost = tried[i + 1].rung.loss() - finest.loss();
     }
     const std::vector<DetailBench::Measured> inOrder =
-        bench.measure(orderOfGivingUp(finestDetail(), trials, leastSaving * finest.ms()), goOn);
+        bench.measure(orderOfGivingUp(full, trials, leastSaving * finest.ms()), goOn);
     if (inOrder.empty()) return calibration;
     calibration.scatter = bench.scatter();
     calibration.ladder = DetailLadder(withJumps(bench, inOrder), bench.vehicleCost());

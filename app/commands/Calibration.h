@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/commands/CityMirrors.h"
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/frame/DetailLadder.h"
@@ -19,6 +20,8 @@ struct CalibrationOptions {
     Antialiasing antialiasing = Antialiasing::fxaa;  ///< what the renderer was made with
     MapsOn mapsOn = MapsOn::automatic;
     std::size_t gpuMapBytes = ReflectionSettings{}.gpuMapBytes;
+    /// Windows and wet streets are drawn and go up and down the ladder; null, or where there are none: not.
+    CityMirrors* mirrors = nullptr;
     std::string renderer;  ///< GL_RENDERER: what is measured holds for it alone
     bool useCache = true;
     std::filesystem::path cache;  ///< empty: the user's cache folder

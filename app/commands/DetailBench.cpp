@@ -46,22 +46,25 @@ reflection::FlipImage seen(const std::vector<glm::vec3>& pixels, glm::ivec2 size
 }  // namespace
 
 DetailBench::DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                         const ReflectionSettings& settings, std::span<const Clip> clips)
+                         const ReflectionSettings& settings, std::span<const Clip> clips,
+                         CityMirrors* mirrors)
     : scene_(scene),
       prepared_(prepared),
       renderer_(renderer),
       settings_(settings),
+      mirrors_(mirrors != nullptr && mirrors->any() ? mirrors : nullptr),
       clips_(clips),
       target_(clips.front().front().views.front().size) {
+    if (mirrors_ != nullptr) full_.mirrors = mirrors_->most();
     ReflectionSettings rerendering;
     rerendering.method = ReflectionMethod::rerender;
     ReflectionEngine rerender(*prepared.tracer, prepared.maps, scene.models, rerendering);
-    MirrorMask mirrors;
+    MirrorMask masks;
     for (const Clip& clip : clips) {
-        draw(clip.back(), &rerender, {});
+        draw(clip.back(), &rerender, full_);
         const std::vector<glm::vec3> picture = toFloat(readPixels(target_.framebuffer(), target_.size()));
         Truth& truth = truths_.emplace_back();
-        truth.mask = mirrors.of(renderer, clip.back(), target_);
+        truth.mask = masks.of(renderer, clip.back(), target_);
         truth.part = partOf(truth.mask);
         truth.whole = seen(picture, target_.size());
         if (truth.part.size.x > 0) truth.mirrors = seen(cut(picture, truth.part), truth.part.size);
@@ -98,7 +101,7 @@ std::vector<DetailBench::Measured> DetailBench::measure(std::span<const Detail> 
                     // Forwards and backwards: a clock that goes down must not always meet the same ones.
                     const std::size_t k = frame % 2 == 0 ? i : details.size() - 1 - i;
                     const auto [drawing, reflecting] =
-                        draw(clip[frame], candidates[k].engine.get(), details[k].drawing);
+                        draw(clip[frame], candidates[k].engine.get(), details[k]);
                     if (frame >= framesBefore) {
                         candidates[k].drawing.push_back(drawing);
                         candidates[k].reflecting.push_back(reflecting);
@@ -149,8 +152,8 @@ VehicleCost DetailBench::vehicleCost() {
         for (const auto& v : visible) without.vehicles[v.index].model = ~0u;  // not drawn
         std::vector<double> all, some;
         for (int i = 0; i < repeats; ++i) {
-            all.push_back(draw(with, nullptr, {}).first);
-            some.push_back(draw(without, nullptr, {}).first);
+            all.push_back(draw(with, nullptr, full_).first);
+            some.push_back(draw(without, nullptr, full_).first);
         }
         more += std::max(fastest(all) - fastest(some), 0.0);
         fewer += visible.size();
@@ -160,23 +163,26 @@ VehicleCost DetailBench::vehicleCost() {
 }
 
 std::pair<double, double> DetailBench::draw(const FrameScene& frame, ReflectionEngine* engine,
-                                            const DrawingDetail& detail) {
-    renderer_.setDetail(detail);
+                                            const Detail& detail) {
+    renderer_.setDetail(detail.drawing);
     finishDrawing();
     const Stopwatch watch;
     renderer_.prepare(frame);
     const View& view = frame.views.front();
+    const PlanarReflections planar =
+        mirrors_ != nullptr ? mirrors_->plan(view, renderer_, detail) : PlanarReflections{};
     VehicleReflections reflections;
     double reflectionMs = 0;
     if (engine != nullptr) {
         std::vector<SeenVehicle> visible;
-        for (const auto& v : renderer_.visibleVehicles(view)) visible.push_back({v.index, v.diameterPixels});
+        for (const auto& v : renderer_.visibleVehicles(view, planar))
+            visible.push_back({v.index, v.diameterPixels});
         const Stopwatch reflecting;
         reflections.slots = engine->update(frame, visible, renderer_).slots;
         reflectionMs = reflecting.elapsed();
         reflections.textures = engine->textures();
     }
-    renderer_.drawView(view, reflections, target_.framebuffer());
+    renderer_.drawView(view, reflections, target_.framebuffer(), planar);
     finishDrawing();
     return {watch.elapsed() - reflectionMs, reflectionMs};
 }
@@ -190,7 +196,8 @@ void DetailBench::compare(Measured& measured) const {
     double errors[2] = {0, 0};  // beside the mirrors, and on them
     std::size_t clips[2] = {0, 0};
     // Drawn in full, the picture differs on mirrors alone.
-    const bool full = measured.rung.detail.drawing == DrawingDetail{};
+    const bool full = measured.rung.detail.drawing == DrawingDetail{} &&
+                      (mirrors_ == nullptr || measured.rung.detail.mirrors == full_.mirrors);
     for (std::size_t clip = 0; clip < truths_.size(); ++clip) {
         const Truth& truth = truths_[clip];
         const std::vector<glm::vec3> picture = toFloat(measured.pictures[clip]);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/commands/CityMirrors.h"
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/display/OffscreenTarget.h"
@@ -31,8 +32,10 @@ class DetailBench {
     };
 
     /// Keeps references to everything. Each clip has framesBefore + framesMeasured frames.
+    /// `mirrors`: what windows and wet streets show; may be null.
     DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                const ReflectionSettings& settings, std::span<const Clip> clips);
+                const ReflectionSettings& settings, std::span<const Clip> clips,
+                CityMirrors* mirrors = nullptr);
 
     /// Units of work of a call of `measure`, for `goOn`, which is called after each and
     /// ends all by false.
@@ -65,8 +68,7 @@ class DetailBench {
     };
 
     /// Milliseconds of drawing and of reflecting. Without an engine, nothing reflects.
-    std::pair<double, double> draw(const FrameScene& frame, ReflectionEngine* engine,
-                                   const DrawingDetail& detail);
+    std::pair<double, double> draw(const FrameScene& frame, ReflectionEngine* engine, const Detail& detail);
     void compare(Measured& measured) const;
     Part partOf(const std::vector<unsigned char>& mask) const;
     template <typename T>
@@ -76,6 +78,8 @@ class DetailBench {
     const PreparedReflections& prepared_;
     SceneRenderer& renderer_;
     ReflectionSettings settings_;
+    CityMirrors* mirrors_;
+    Detail full_;  ///< what is measured against
     std::span<const Clip> clips_;
     OffscreenTarget target_;
     std::vector<Truth> truths_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/commands/Calibration.h"
+#include "app/commands/CityMirrors.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/WetRoad.h"
 #include "app/report/Timing.h"
@@ -77,6 +78,12 @@ void Drive::govern(const CarryOn& calibrating) {
         options.renderer = rendererName_;
         options.quiet = preparation_.quiet;
         options.carryOn = calibrating;
+        MirrorSettings windows;
+        windows.on = settings_.mirrors;
+        windows.depth = settings_.mirrorDepth;
+        windows.maps = settings_.mirrorMaps;
+        CityMirrors mirrors(*scene_, windows, settings_.weather == Weather::wet);
+        options.mirrors = &mirrors;
         const Stopwatch watch;
         Calibration calibration = calibrate(*scene_, lighting_, prepared_, *renderer_, options);
         if (!calibration.complete || calibration.ladder.empty()) {
@@ -210,19 +217,28 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
     timer_.begin();
     renderer_->prepare(frame_);
     reflections_ = {};
-    mirrorPlan_ = mirrorPlanner_.plan(std::span(&view, 1), mirrorSettings(view),
-                                      [this](const auto& from, const auto* glass, const auto& box) {
-                                          return renderer_->hides(from, glass, box);
-                                      });
+    const auto planMirrors = [&] {
+        MirrorSettings settings = mirrorSettings(view);
+        if (governor_) settings.limit(governor_->detail());
+        mirrorPlan_ = mirrorPlanner_.plan(std::span(&view, 1), settings,
+                                          [this](const auto& from, const auto* glass, const auto& box) {
+                                              return renderer_->hides(from, glass, box);
+                                          });
+    };
+    planMirrors();
     PlanarReflections planar;
     if (settings_.mirrors) planar.plan = &mirrorPlan_;
     planar.wet = settings_.weather == Weather::wet;
-    stats.mirrors = mirrorPlan_.counters;
     if (settings_.method != ReflectionMethod::none && engine_) {
         std::vector<SeenVehicle> seen;
         for (const auto& visible : renderer_->visibleVehicles(view, planar))
             seen.push_back({visible.index, visible.diameterPixels});
-        if (governor_) stats.governed = chooseDetail(seen.size(), view);
+        if (governor_) {
+            // The detail follows from what is seen, in windows too: those of the detail before.
+            const MirrorDetail before = governor_->detail().mirrors;
+            stats.governed = chooseDetail(seen.size(), view);
+            if (!(governor_->detail().mirrors == before)) planMirrors();
+        }
         const Stopwatch reflecting;
         const ReflectionPlan& plan = engine_->update(frame_, seen, *renderer_);
         reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
@@ -232,6 +248,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
     renderer_->drawView(view, reflections_, framebuffer, planar);
     stats.frameMs = timer_.end();
     stats.drawn = renderer_->counters();
+    stats.mirrors = mirrorPlan_.counters;
     if (governor_) {
         FrameCost cost{stats.frameMs, stats.reflectionMs, stats.reflections.visible,
                        stats.reflections.texels};
@@ -272,6 +289,8 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const Ca
         makeRenderer();
         ladder_.reset();
     }
+    // What was measured with windows or rain does not hold without.
+    if (wanted.mirrors != old.mirrors || wanted.weather != old.weather) ladder_.reset();
     const bool relit = wanted.hour != old.hour;
     const Lighting lighting =
         relit ? lightingAt(wanted.hour, scene_->city.frame ? scene_->city.frame->latitude() : 50) : lighting_;

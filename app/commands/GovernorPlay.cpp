@@ -76,12 +76,15 @@ double jump(const Image8& from, const Image8& to) {
 
 GovernorPlay::GovernorPlay(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                            std::uint32_t mostCars, std::uint64_t seed, glm::ivec2 resolution,
-                           const ReflectionSettings& settings)
+                           const ReflectionSettings& settings, const CityMirrors& mirrors)
     : scene_(scene),
       renderer_(renderer),
       target_(resolution),
       set_(setCarsStage(scene, renderer, mostCars, seed, resolution)),
-      engine_(*prepared.tracer, prepared.maps, scene.models, settings) {}
+      engine_(*prepared.tracer, prepared.maps, scene.models, settings),
+      mirrors_(mirrors) {
+    if (mirrors_.any()) renderer.setGlass(scene.glass.fronts);
+}
 
 void GovernorPlay::next(Cast& cast) {
     for (double ahead = 0; ahead < frameStep; ahead += vehicles::TrafficOptions{}.step) set_.traffic->step();
@@ -93,13 +96,20 @@ FrameCost GovernorPlay::draw(const Detail* fixed, Governor* governor) {
     finishDrawing();
     const Stopwatch watch;
     renderer_.prepare(frame_);
-    const std::vector<SeenVehicle> seen = seenIn(renderer_, frame_.views);
+    // What is seen in windows is that of the detail before; the detail follows from how much is seen.
+    PlanarReflections planar =
+        mirrors_.plan(set_.view, renderer_, governor != nullptr ? governor->detail() : *fixed);
+    std::vector<SeenVehicle> seen;
+    for (const auto& v : renderer_.visibleVehicles(set_.view, planar))
+        seen.push_back({v.index, v.diameterPixels});
+    const MirrorDetail before = governor != nullptr ? governor->detail().mirrors : fixed->mirrors;
     int dissolveFrames = 0;
     if (governor != nullptr) {
         governor->expect({seen.size(), renderer_.drewLast(set_.view)});
         dissolveFrames = governor->dissolveFrames();
     }
     const Detail detail = governor != nullptr ? governor->detail() : *fixed;
+    if (!(detail.mirrors == before)) planar = mirrors_.plan(set_.view, renderer_, detail);
     ReflectionSettings settings = engine_.settings();
     settings.detail = detail.reflection;
     engine_.configure(settings);
@@ -107,7 +117,7 @@ FrameCost GovernorPlay::draw(const Detail* fixed, Governor* governor) {
     const Stopwatch reflecting;
     const ReflectionPlan& plan = engine_.update(frame_, seen, renderer_);
     const double reflectionMs = reflecting.elapsed();
-    renderer_.drawView(set_.view, {engine_.textures(), plan.slots}, target_.framebuffer());
+    renderer_.drawView(set_.view, {engine_.textures(), plan.slots}, target_.framebuffer(), planar);
     finishDrawing();
     const FrameCost cost{watch.elapsed(), reflectionMs, plan.visible, plan.texels};
     if (governor != nullptr) governor->observe(cost);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands/CarsStage.h"
+#include "app/commands/CityMirrors.h"
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/display/OffscreenTarget.h"
@@ -24,7 +25,7 @@ class GovernorPlay {
     /// one picture to the next.
     GovernorPlay(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                  std::uint32_t mostCars, std::uint64_t seed, glm::ivec2 resolution,
-                 const ReflectionSettings& settings);
+                 const ReflectionSettings& settings, const CityMirrors& mirrors);
 
     /// False: the city has no street to look down.
     bool possible() const { return set_.traffic.has_value(); }
@@ -45,6 +46,7 @@ class GovernorPlay {
     OffscreenTarget target_;
     CarsStage set_;
     ReflectionEngine engine_;
+    CityMirrors mirrors_;
     FrameScene frame_;
 };
 

@@ -50,6 +50,8 @@ Detail blend(const Detail& a, const Detail& b, double t) {
     detail.drawing = {evenly(a.drawing.scale, b.drawing.scale, t),
                       evenly(a.drawing.antialiasing, b.drawing.antialiasing, t),
                       byRatio(a.drawing.vehicleTolerance, b.drawing.vehicleTolerance, t)};
+    detail.mirrors = {byRatio(a.mirrors.texels, b.mirrors.texels, t),
+                      evenly(a.mirrors.maps, b.mirrors.maps, t), evenly(a.mirrors.depth, b.mirrors.depth, t)};
     return detail;
 }
 
@@ -80,6 +82,15 @@ std::string givenUp(const Detail& full, const Detail& now) {
     if (now.drawing.vehicleTolerance > full.drawing.vehicleTolerance)
         add("vehicles off by " + number(now.drawing.vehicleTolerance, "%.1f") + " pixels, not " +
             number(full.drawing.vehicleTolerance, "%.1f"));
+    const MirrorDetail &fullMirrors = full.mirrors, &nowMirrors = now.mirrors;
+    if (nowMirrors.texels < fullMirrors.texels)
+        add("windows at " + number(100 * nowMirrors.texels, "%.0f") + "% of the size");
+    if (std::round(nowMirrors.maps) < std::round(fullMirrors.maps))
+        add(number(std::round(nowMirrors.maps), "%.0f") + " reflections in windows, not " +
+            number(std::round(fullMirrors.maps), "%.0f"));
+    if (std::round(nowMirrors.depth) < std::round(fullMirrors.depth))
+        add(number(std::round(nowMirrors.depth), "%.0f") + " windows in a row, not " +
+            number(std::round(fullMirrors.depth), "%.0f"));
     return text;
 }
 

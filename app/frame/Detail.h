@@ -33,9 +33,19 @@ struct DrawingDetail {
     bool operator==(const DrawingDetail&) const = default;
 };
 
+/// How much of what a city's windows and wet streets mirror is drawn: limits to what is asked for.
+struct MirrorDetail {
+    double texels = 1;  ///< side of a reflection over what the picture's size asks for
+    double maps = 8;    ///< reflections a frame at most; whole numbers count
+    double depth = 2;   ///< mirrors in a row; whole numbers count
+
+    bool operator==(const MirrorDetail&) const = default;
+};
+
 struct Detail {
     ReflectionDetail reflection;
     DrawingDetail drawing;
+    MirrorDetail mirrors = {};
 
     bool operator==(const Detail&) const = default;
 };

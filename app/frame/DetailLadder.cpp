@@ -106,6 +106,12 @@ double& valueOf(Detail& detail, Knob knob) {
             return detail.drawing.scale;
         case Knob::antialiasing:
             return detail.drawing.antialiasing;
+        case Knob::mirrorTexels:
+            return detail.mirrors.texels;
+        case Knob::mirrorMaps:
+            return detail.mirrors.maps;
+        case Knob::mirrorDepth:
+            return detail.mirrors.depth;
         case Knob::vehicleTolerance:
             break;
     }

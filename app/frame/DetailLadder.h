@@ -74,10 +74,13 @@ enum class Knob : std::uint8_t {
     scale,
     antialiasing,
     vehicleTolerance,
+    mirrorTexels,
+    mirrorMaps,
+    mirrorDepth,
 };
-inline constexpr std::array<std::string_view, 8> knobNames{
-    "texel budget", "texels a pixel", "error threshold", "candidates",
-    "lookups",      "scale",          "antialiasing",    "vehicle tolerance"};
+inline constexpr std::array<std::string_view, 11> knobNames{
+    "texel budget", "texels a pixel",    "error threshold", "candidates",  "lookups",     "scale",
+    "antialiasing", "vehicle tolerance", "mirror texels",   "mirror maps", "mirror depth"};
 double& valueOf(Detail& detail, Knob knob);
 
 /// A knob turned down alone, from the finest detail, and what that was measured to save and to lose.

@@ -45,6 +45,13 @@ reflection::EyeView eyeViewOf(const View& view) {
     return eye;
 }
 
+void MirrorSettings::limit(const Detail& detail) {
+    const auto whole = [](double most) { return std::max(std::round(most), 0.0); };
+    maps = static_cast<std::uint32_t>(std::min(static_cast<double>(maps), whole(detail.mirrors.maps)));
+    depth = static_cast<int>(std::min(static_cast<double>(depth), whole(detail.mirrors.depth)));
+    texels *= detail.mirrors.texels * detail.drawing.scale;
+}
+
 MirrorPlanner::MirrorPlanner(std::span<const city::GlassFront> fronts) {
     for (std::uint32_t i = 0; i < fronts.size(); ++i) {
         const city::GlassFront& front = fronts[i];
@@ -127,6 +134,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     const auto give = [&](const std::vector<Candidate>& some) {
         for (const Candidate& c : some) {
             mirrors.push_back({c.front, fronts_[c.front].plane});
+            mirrors.back().texels = settings.texels;
             plan.fronts.push_back(fronts_[c.front].index);
         }
     };
@@ -134,7 +142,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     give(behindOthers);
     if (road) {
         mirrors.push_back({MirrorPlan::road, *road});
-        mirrors.back().texels = wetTexels;
+        mirrors.back().texels = wetTexels * settings.texels;
         plan.fronts.push_back(MirrorPlan::road);
     }
     reflection::groupCoplanar(mirrors);

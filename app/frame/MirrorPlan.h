@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/frame/Detail.h"
 #include "app/frame/View.h"
 #include "app/frame/WetGround.h"
 #include "city/model/GlassFronts.h"
@@ -24,6 +25,7 @@ struct MirrorSettings {
     double leastPixels =
         250;  ///< of its glass, seen from the eye, below which a front is drawn without a map
     std::uint32_t mostFronts = 48;  ///< given to the tree: the most visible of those that are near
+    double texels = 1;              ///< of a reflection's side a pixel
     double levelScale = 0.5;        ///< texels a pixel for each further mirror in a row
     double fade = 0;  ///< metres behind a mirror on which what it shows fades to 1/e; 0: it does not
     reflection::Economies economies;
@@ -31,8 +33,11 @@ struct MirrorSettings {
     std::optional<double> wetRoad = std::nullopt;
 
     bool operator==(const MirrorSettings& b) const {
-        return on == b.on && depth == b.depth && maps == b.maps && fade == b.fade;
+        return on == b.on && depth == b.depth && maps == b.maps && texels == b.texels && fade == b.fade;
     }
+
+    /// No more than a detail allows.
+    void limit(const Detail& detail);
 };
 
 /// What was planned and what was left out.
