@@ -23,7 +23,7 @@ std::vector<Bench> allBenches() {
           cellOption | pictureOptions},
          benchEmpty},
         {{"governor", "a budget held through a step from 10 to 200 cars on screen and back",
-          budgetOption | cellOption | pictureOptions},
+          budgetOption | cellOption | mirrorOptions | pictureOptions},
          benchGovernor},
         {{"localmap", "one local map by every method, against re-rendering its six faces",
           mapOptions | mapsOnOptions},

@@ -82,6 +82,7 @@ void Drive::govern(const CarryOn& calibrating) {
         windows.on = settings_.mirrors;
         windows.depth = settings_.mirrorDepth;
         windows.maps = settings_.mirrorMaps;
+        windows.fade = settings_.mirrorFade;
         CityMirrors mirrors(*scene_, windows, settings_.weather == Weather::wet);
         options.mirrors = &mirrors;
         const Stopwatch watch;

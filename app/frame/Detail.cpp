@@ -85,12 +85,12 @@ std::string givenUp(const Detail& full, const Detail& now) {
     const MirrorDetail &fullMirrors = full.mirrors, &nowMirrors = now.mirrors;
     if (nowMirrors.texels < fullMirrors.texels)
         add("windows at " + number(100 * nowMirrors.texels, "%.0f") + "% of the size");
-    if (std::round(nowMirrors.maps) < std::round(fullMirrors.maps))
-        add(number(std::round(nowMirrors.maps), "%.0f") + " reflections in windows, not " +
-            number(std::round(fullMirrors.maps), "%.0f"));
-    if (std::round(nowMirrors.depth) < std::round(fullMirrors.depth))
-        add(number(std::round(nowMirrors.depth), "%.0f") + " windows in a row, not " +
-            number(std::round(fullMirrors.depth), "%.0f"));
+    const auto count = [&](const char* of, double before, double after) {
+        if (std::round(after) < std::round(before))
+            add(of + number(std::round(after), "%.0f") + ", not " + number(std::round(before), "%.0f"));
+    };
+    count("reflections in windows: ", fullMirrors.maps, nowMirrors.maps);
+    count("windows in a row: ", fullMirrors.depth, nowMirrors.depth);
     return text;
 }
 

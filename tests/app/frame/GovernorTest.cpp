@@ -415,5 +415,21 @@ TEST(DetailTest, blendsExactlyAtItsEndsAndInBetweenOtherwise) {
     EXPECT_NE(givenUp(a, b).find("drawn at 50%"), std::string::npos);
 }
 
+TEST(DetailTest, windowsAreGivenUpWithTheirOwnWordsAndInWholeReflections) {
+    Detail all, few;
+    all.mirrors = {1, 8, 2};
+    few.mirrors = {0.5, 1, 1};
+    EXPECT_EQ(blend(all, few, 0), all);
+    EXPECT_EQ(blend(all, few, 1), few);
+    EXPECT_NEAR(blend(all, few, 0.5).mirrors.texels, std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(blend(all, few, 0.5).mirrors.maps, 4.5, 1e-12);
+    EXPECT_EQ(givenUp(all, few),
+              "windows at 50% of the size, reflections in windows: 1, not 8, windows in a row: 1, not 2");
+    // A hair less is the same number of reflections: nothing to tell.
+    Detail hair = all;
+    hair.mirrors.maps = 7.6;
+    EXPECT_EQ(givenUp(all, hair), "");
+}
+
 }  // namespace
 }  // namespace app

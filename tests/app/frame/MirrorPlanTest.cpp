@@ -203,6 +203,38 @@ TEST(WetRoad, HeightIsThatOfTheNearestLane) {
     EXPECT_NEAR(app::roadHeightNear(roads, {500, 40, 0}).value_or(-1), 10, 1e-6);
 }
 
+TEST(MirrorPlan, ADetailLimitsWhatIsAskedForAndAddsNothing) {
+    const auto fronts = street(3);
+    const app::View view = viewFrom({5, -2, 2}, {5, 7, 1.8});
+    MirrorSettings asked;
+    asked.depth = 3, asked.maps = 5;
+    app::Detail detail;
+    detail.mirrors = {1, 100, 100};
+    MirrorSettings limited = asked;
+    limited.limit(detail);
+    EXPECT_EQ(limited, asked);
+
+    detail.mirrors = {0.5, 1.4, 2};
+    limited.limit(detail);
+    EXPECT_EQ(limited.maps, 1u);
+    EXPECT_EQ(limited.depth, 2);
+    const MirrorPlan full = planOf(fronts, view, asked), less = planOf(fronts, view, limited);
+    ASSERT_FALSE(full.tree.nodes.empty());
+    ASSERT_FALSE(less.tree.nodes.empty());
+    EXPECT_EQ(less.counters.passes, 1u);
+    // It is what the eye sees most of, at half the side.
+    const reflection::ReflectionNode& kept = less.tree.nodes.front();
+    EXPECT_EQ(kept.parent, reflection::ReflectionNode::none);
+    int widest = 0;
+    for (const auto& node : full.tree.nodes)
+        if (node.parent == reflection::ReflectionNode::none) widest = std::max(widest, node.resolution.x);
+    EXPECT_NEAR(kept.resolution.x, 0.5 * widest, 2);
+
+    detail.mirrors.maps = 0;
+    limited.limit(detail);
+    EXPECT_EQ(planOf(fronts, view, limited).counters.passes, 0u);
+}
+
 TEST(MirrorPlan, EqualInputGivesEqualPlans) {
     const auto fronts = street(6);
     const app::View view = viewFrom({-3, 1, 2}, {30, 4, 2});
