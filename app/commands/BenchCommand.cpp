@@ -19,6 +19,11 @@ std::vector<Bench> allBenches() {
           trafficOptions | severalCars | qualityOption | cellOption | mapsOnOptions | pictureOptions |
               durationOptions},
          benchCars},
+        {{"chrome",
+          "close things in curved chrome: searches for reflection points, shares of them, the published "
+          "search; on the kitchen, or a scene FILE.json",
+          0},
+         benchChrome},
         {{"empty", "what mem costs where there is nothing to reflect, against none",
           cellOption | pictureOptions},
          benchEmpty},

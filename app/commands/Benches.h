@@ -22,6 +22,7 @@ int reportBench(const Options& options, const ResultFile& results,
                 const std::vector<std::vector<std::string>>& table);
 
 int benchCars(const Options& options);
+int benchChrome(const Options& options);
 int benchEmpty(const Options& options);
 int benchGovernor(const Options& options);
 int benchSquare(const Options& options);
