@@ -1,8 +1,10 @@
 #include <iostream>
+#include <stdexcept>
 
 #include "app/commands/Benches.h"
 #include "app/commands/ChromeBench.h"
 #include "app/commands/Version.h"
+#include "app/display/OffscreenContext.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
@@ -10,27 +12,53 @@
 
 namespace app {
 
+namespace {
+
+MirrorWorld chromeWorld(const Options& options) {
+    if (options.city == Options().city)
+        return loadMirrorWorld(reflection::gl::dataFolder() / "scenes" / "kitchen.json");
+    if (!options.city.ends_with(".json"))
+        throw std::runtime_error(
+            "'" + options.city +
+            "': chrome is measured in scenes of its own; name a scene FILE.json, or nothing.");
+    MirrorWorld world = loadMirrorWorld(options.city);
+    if (world.curved.empty())
+        throw std::runtime_error(
+            options.city + ": the scene has no curved reflector; add a \"chrome lathe\" or \"chrome ball\".");
+    return world;
+}
+
+}  // namespace
+
 int benchChrome(const Options& options) {
-    ResultFile results("chrome", std::string(programVersion), "");
-    const std::filesystem::path file = options.city == Options().city
-                                           ? reflection::gl::dataFolder() / "scenes" / "kitchen.json"
-                                           : std::filesystem::path(options.city);
-    const MirrorWorld world = loadMirrorWorld(file);
+    const MirrorWorld world = chromeWorld(options);
     const ChromeStage stage(world);
-    Progress progress("chrome", stage.parts.size(), options.quiet);
+    ResultFile results("chrome", std::string(programVersion), "");
+    Progress progress("chrome", 5 + 3 * stage.parts.size(), options.quiet);
     ChromeBenchOptions how;
     how.seed = options.seed;
+    how.car = options.car;
+    how.carLength = options.carLength;
+    how.save = options.save;
+    if (options.publishedSearch) how.vertex.published = reflection::PublishedOptions{};
     how.interrupted = [] { return interrupted(); };
     how.advance = [&progress] { progress.advance(); };
-    std::vector<std::vector<std::string>> last;
-    const auto add = [&](const MirrorRows& part) {
+    std::vector<MirrorRows> parts;
+    const auto add = [&](MirrorRows part) {
         for (const nlohmann::ordered_json& row : part.rows) results.add(row);
-        if (part.table.size() < 2) return;
+        parts.push_back(std::move(part));
+    };
+    add(chromeSearches(how));
+    add(chromeShares(stage, how));
+    add(publishedSearches(stage, how));
+    add(chromeStills(stage, how));
+    std::vector<std::vector<std::string>> last;
+    for (const MirrorRows& part : parts) {
+        if (part.table.size() < 2) continue;
         if (!last.empty()) std::cout << formatTable(last) << '\n';
         std::cout << part.title << '\n';
         last = part.table;
-    };
-    add(chromeShares(stage, how));
+    }
     return reportBench(options, results, last);
 }
 

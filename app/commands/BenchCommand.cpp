@@ -20,9 +20,9 @@ std::vector<Bench> allBenches() {
               durationOptions},
          benchCars},
         {{"chrome",
-          "close things in curved chrome: searches for reflection points, shares of them, the published "
-          "search; on the kitchen, or a scene FILE.json",
-          0},
+          "close things in curved chrome: searches a second, shares of them, the published search, a moving "
+          "eye, pictures against rays; in a kitchen, or a scene FILE.json",
+          bodyOption | searchOption | saveOption},
          benchChrome},
         {{"empty", "what mem costs where there is nothing to reflect, against none",
           cellOption | pictureOptions},

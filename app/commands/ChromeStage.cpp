@@ -47,8 +47,12 @@ ChromeStage::ChromeStage(const MirrorWorld& scene, double reach) : world(scene) 
             const city::Aabb box = m.bounds();
             const glm::vec3 centre(c.reflector.centre);
             const float away = glm::distance(glm::clamp(centre, box.min, box.max), centre);
-            if (static_cast<double>(away) <= reach * c.reflector.radius) part.close.push_back(welded(m));
+            if (static_cast<double>(away) > reach * c.reflector.radius) continue;
+            part.close.push_back(welded(m));
+            part.close.back().distance = away;
         }
+        std::stable_sort(part.close.begin(), part.close.end(),
+                         [](const CloseMesh& a, const CloseMesh& b) { return a.distance < b.distance; });
         parts.push_back(std::move(part));
     }
 }
@@ -73,6 +77,10 @@ Spread spreadOf(std::vector<double> values) {
     s.p99 = values[(s.n - 1) * 99 / 100];
     s.worst = values.back();
     return s;
+}
+
+nlohmann::ordered_json toJson(const Spread& s) {
+    return {{"n", s.n}, {"mean", s.mean}, {"p99", s.p99}, {"worst", s.worst}};
 }
 
 }  // namespace app

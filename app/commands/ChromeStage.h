@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace app {
 struct CloseMesh {
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> indices;
+    float distance = 0;  ///< metres, of its box from the reflector's centre
 };
 CloseMesh welded(const LitMesh& mesh);
 
@@ -27,7 +29,7 @@ struct ChromePart {
     std::string name;
     const MirrorWorld::Curved* mirror = nullptr;
     reflection::Reflector reflector;
-    std::vector<CloseMesh> close;
+    std::vector<CloseMesh> close;  ///< nearest first
     std::size_t vertices() const {
         std::size_t n = 0;
         for (const CloseMesh& m : close) n += m.positions.size();
@@ -38,7 +40,7 @@ struct ChromePart {
 /// A scene's curved reflectors with their maps. Keeps a reference to the world.
 struct ChromeStage {
     /// `reach`: radii of a reflector's ball around it within which things are close to it.
-    explicit ChromeStage(const MirrorWorld& scene, double reach = 6);
+    explicit ChromeStage(const MirrorWorld& scene, double reach = 12);
 
     const MirrorWorld& world;
     std::vector<ChromePart> parts;
@@ -62,5 +64,7 @@ struct Spread {
     double mean = 0, p99 = 0, worst = 0;
 };
 Spread spreadOf(std::vector<double> values);
+/// {"n", "mean", "p99", "worst"}.
+nlohmann::ordered_json toJson(const Spread& spread);
 
 }  // namespace app

@@ -8,42 +8,11 @@
 #include <sstream>
 #include <string_view>
 
+#include "app/commands/OptionChecks.h"
+
 namespace app {
 
 namespace {
-
-/// CLI11's own Range lets NaN pass.
-CLI::Validator between(double low, double high, const std::string& unit) {
-    const auto number = [](double x) {
-        std::ostringstream text;
-        text << x;
-        return text.str();
-    };
-    const std::string range = number(low) + " to " + number(high) + (unit.empty() ? "" : " " + unit);
-    return CLI::Validator(
-        [low, high, range](const std::string& text) -> std::string {
-            double value = 0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-                return "'" + text + "' is not a finite number";
-            if (value < low || value > high) return text + " is outside " + range;
-            return {};
-        },
-        "");
-}
-
-CLI::Validator wholeBetween(std::uint64_t low, std::uint64_t high) {
-    const std::string range = std::to_string(low) + " to " + std::to_string(high);
-    return CLI::Validator(
-        [low, high, range](const std::string& text) -> std::string {
-            std::uint64_t value = 0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
-                return "'" + text + "' is not a whole number from " + range;
-            return {};
-        },
-        "");
-}
 
 template <typename T>
 struct EnumOf {
@@ -90,28 +59,16 @@ void parseResolution(const std::string& text, glm::ivec2& target) {
             "--resolution", "'" + text + "' is not WIDTHxHEIGHT with both from 16 to 16384, like 1280x720");
 }
 
-/// A name of a file or folder: not empty, and not the next option, which was meant as one.
-CLI::Validator isPath() {
-    return CLI::Validator(
-        [](const std::string& text) -> std::string {
-            if (text.empty()) return "the name is empty";
-            if (text.front() == '-')
-                return "'" + text + "' looks like an option; write './" + text + "' if it is a name";
-            return {};
-        },
-        "");
-}
-
-/// A file that will be written over: its name must say that it is one of ours, never a city to be read.
-CLI::Validator isGlb(const std::string& remedy) {
-    return CLI::Validator(
-        [remedy](const std::string& text) -> std::string {
-            std::string extension = std::filesystem::path(text).extension().string();
-            for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-            if (extension == ".glb") return {};
-            return "names the file to write, which ends in .glb, not '" + text + "'; " + remedy;
-        },
-        "");
+void addBody(CLI::App& parser, Options& o, unsigned groups) {
+    parser
+        .add_option(groups & exportOptions ? "--body" : "--car", o.car,
+                    "body for all cars: a binary glTF file")
+        ->type_name("FILE.glb")
+        ->check(isPath() & CLI::ExistingFile);
+    parser.add_option("--car-length", o.carLength, "length to which the body is scaled, 0.5 to 60")
+        ->type_name("METRES")
+        ->capture_default_str()
+        ->check(between(0.5, 60, "metres"));
 }
 
 void addTraffic(CLI::App& parser, Options& o, unsigned groups) {
@@ -128,15 +85,7 @@ void addTraffic(CLI::App& parser, Options& o, unsigned groups) {
             ->type_name("N")
             ->check(wholeBetween(0, 100000))
             ->expected(1);
-    parser
-        .add_option(groups & exportOptions ? "--body" : "--car", o.car,
-                    "body for all cars: a binary glTF file")
-        ->type_name("FILE.glb")
-        ->check(isPath() & CLI::ExistingFile);
-    parser.add_option("--car-length", o.carLength, "length to which the body is scaled, 0.5 to 60")
-        ->type_name("METRES")
-        ->capture_default_str()
-        ->check(between(0.5, 60, "metres"));
+    addBody(parser, o, groups);
 }
 
 /// "16ms", "16 ms" or "16".
@@ -225,6 +174,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->check(between(100, 20000, "metres"));
     }
     if (groups & trafficOptions) addTraffic(parser, o, groups);
+    if (groups & bodyOption) addBody(parser, o, groups);
     if (groups & methodOption)
         addNamed(parser, "--method", o.method, reflectionMethodNames,
                  "how vehicles get their reflections (default mem)");
@@ -282,6 +232,14 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->type_name("DIR")
             ->check(isPath())
             ->capture_default_str();
+    if (groups & searchOption)
+        parser
+            .add_option_function<std::string>(
+                "--search", [&o](const std::string& text) { o.publishedSearch = text == "paper"; },
+                "search for reflection points, ours or paper: as published, 9 steps, for comparison (default "
+                "ours)")
+            ->type_name("NAME")
+            ->check(CLI::IsMember(std::vector<std::string>{"ours", "paper"}));
     if (groups & saveOption)
         parser.add_option("--save", o.save, "folder for pictures of what was measured")
             ->type_name("DIR")

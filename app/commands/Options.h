@@ -59,6 +59,7 @@ struct Options {
     std::optional<std::filesystem::path> exportCity, exportCar, exportDrive;
     std::uint64_t rays = 4'000'000;             ///< of `stability`
     std::optional<std::filesystem::path> save;  ///< folder for what was measured, as pictures
+    bool publishedSearch = false;               ///< --search paper
 
     /// --gpu-map-memory in bytes.
     std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
@@ -94,6 +95,8 @@ enum OptionGroup : unsigned {
     budgetOption = 1u << 20,   ///< --budget
     errorOptions = 1u << 21,   ///< --error --fixed-quality
     saveOption = 1u << 23,     ///< --save
+    bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
+    searchOption = 1u << 25,   ///< --search
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

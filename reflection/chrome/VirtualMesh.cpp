@@ -109,7 +109,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
                 middles.push_back(0.5 * (places[a] + places[b]));
             }
         answers.resize(middles.size());
-        findReflectionPoints(map, eye, middles, answers, options.vertices.search);
+        findReflectionPoints(map, eye, middles, answers, options.vertices);
         for (std::size_t k = 0; k < asked.size(); ++k) {
             const auto [a, b] = asked[k];
             ++counts.searched;

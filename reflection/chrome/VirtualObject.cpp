@@ -27,6 +27,15 @@ void count(VirtualCounts& counts, const ReflectionPoint& r) {
 
 }  // namespace
 
+void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
+                          std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
+                          const VirtualOptions& options) {
+    if (options.published)
+        findReflectionPointsAsPublished(map, eye, vertices, points, *options.published);
+    else
+        findReflectionPoints(map, eye, vertices, points, options.search);
+}
+
 VirtualObject::VirtualObject(std::vector<glm::vec3> positions, const VirtualOptions& options)
     : settings(options), points(std::move(positions)) {
     image.resize(points.size());
@@ -51,7 +60,7 @@ VirtualCounts VirtualObject::update(const ReflectorMap& map, const glm::dvec3& e
         asked.resize(nodes.size());
         answers.resize(nodes.size());
         for (std::size_t k = 0; k < nodes.size(); ++k) asked[k] = place(nodes[k]);
-        findReflectionPoints(map, eye, asked, answers, settings.search);
+        findReflectionPoints(map, eye, asked, answers, settings);
         atNodes.resize(nodes.size());
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             count(counts, answers[k]);
@@ -81,7 +90,7 @@ VirtualCounts VirtualObject::update(const ReflectorMap& map, const glm::dvec3& e
     asked.resize(exact.size());
     answers.resize(exact.size());
     for (std::size_t k = 0; k < exact.size(); ++k) asked[k] = place(points[exact[k]]);
-    findReflectionPoints(map, eye, asked, answers, settings.search);
+    findReflectionPoints(map, eye, asked, answers, settings);
     for (std::size_t k = 0; k < exact.size(); ++k) {
         count(counts, answers[k]);
         image[exact[k]] = {imageOf(answers[k], eye, asked[k]), answers[k].status};

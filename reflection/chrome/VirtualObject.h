@@ -26,7 +26,15 @@ struct VirtualOptions {
     /// share): across an outline the virtual image moves too fast for a cell.
     bool exactAtOutlines = true;
     SearchOptions search = {};
+    /// Set: vertices are searched for as published instead, for comparison; see
+    /// findReflectionPointsAsPublished.
+    std::optional<PublishedOptions> published = {};
 };
+
+/// One of both searches, as the options say.
+void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
+                          std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
+                          const VirtualOptions& options);
 
 /// How an update went.
 struct VirtualCounts {
