@@ -40,8 +40,8 @@ std::vector<Bench> allBenches() {
           saveOption},
          benchMirrors},
         {{"square",
-          "what stands in the city and mirrors it: error by every method, and what it costs; pictures in "
-          "--out",
+          "what stands in the city and mirrors it, by every method, and its polished stone and frosted "
+          "glass: error and time; pictures in --out",
           trafficOptions | qualityOption | cellOption | pictureOptions | outOptions},
          benchSquare},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",

@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/commands/Benches.h"
 #include "app/commands/CarsStage.h"
@@ -8,6 +9,7 @@
 #include "app/commands/PreparedScene.h"
 #include "app/commands/ReflectionSource.h"
 #include "app/commands/SquareShots.h"
+#include "app/commands/StoneBench.h"
 #include "app/commands/Version.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
@@ -221,6 +223,7 @@ int benchSquare(const Options& options) {
         }
     }
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);
+    if (!interrupted()) measureStone(options, stage, std::move(traffic), results, table);
     return reportBench(options, results, table);
 }
 

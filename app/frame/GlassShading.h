@@ -15,6 +15,14 @@ namespace app {
 inline constexpr float roomSky = 0.6f;
 inline constexpr float roomSun = 0.35f;
 
+/// The shares that fall on what is seen through a pane, or lies at its surface.
+inline float behindSky(const city::GlassSurface& glass) {
+    return glass.solid ? 1.f : roomSky;
+}
+inline float behindSun(const city::GlassSurface& glass) {
+    return glass.solid ? 1.f : roomSun;
+}
+
 /// What a pane lets through and what it mirrors at an angle, as shares of the light behind and before it.
 struct GlassShares {
     float through = 1, mirrored = 0;

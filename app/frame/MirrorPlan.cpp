@@ -55,8 +55,8 @@ void MirrorSettings::limit(const Detail& detail) {
 MirrorPlanner::MirrorPlanner(std::span<const city::GlassFront> fronts) {
     for (std::uint32_t i = 0; i < fronts.size(); ++i) {
         const city::GlassFront& front = fronts[i];
-        reflection::MirrorResult made =
-            reflection::MirrorPlane::make(front.outline, {glm::vec3(front.glass.reflectance), 0});
+        reflection::MirrorResult made = reflection::MirrorPlane::make(
+            front.outline, {glm::vec3(front.glass.reflectance), front.glass.roughness});
         // What GlassFronts lists has an area and is flat to single precision; anything else mirrors nothing.
         if (made.status != reflection::MirrorStatus::ok) continue;
         fronts_.push_back({i, static_cast<std::uint32_t>(front.paneCount), front.area, front.bounds,
@@ -99,10 +99,11 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
         }
         if (whole <= 0) continue;
         ++counters.inReach;
-        if (pixels >= settings.leastPixels) {
+        const bool rough = front.rough();
+        if (pixels >= (rough ? settings.leastRoughPixels : settings.leastPixels)) {
             ++counters.inView;
             direct.push_back({f, pixels});
-        } else if (settings.depth > 1 && whole >= settings.leastPixels) {
+        } else if (!rough && settings.depth > 1 && whole >= settings.leastPixels) {
             behindOthers.push_back({f, whole});
         }
     }
@@ -133,8 +134,9 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     std::vector<reflection::Mirror> mirrors;
     const auto give = [&](const std::vector<Candidate>& some) {
         for (const Candidate& c : some) {
-            mirrors.push_back({c.front, fronts_[c.front].plane});
-            mirrors.back().texels = settings.texels;
+            const Front& front = fronts_[c.front];
+            mirrors.push_back({c.front, front.plane});
+            mirrors.back().texels = settings.texels * (front.rough() ? roughTexels : 1);
             plan.fronts.push_back(fronts_[c.front].index);
         }
     };
@@ -145,7 +147,10 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
         mirrors.back().texels = wetTexels * settings.texels;
         plan.fronts.push_back(MirrorPlan::road);
     }
-    reflection::groupCoplanar(mirrors);
+    const std::uint32_t groups = reflection::groupCoplanar(mirrors);
+    // Rough fronts want few texels and much around them, panes many and nothing else: a view for each.
+    for (reflection::Mirror& m : mirrors)
+        if (m.group != reflection::Mirror::alone && m.plane.surface().roughness > 0) m.group += groups;
 
     reflection::ReflectionScene scene;
     scene.mirrors = mirrors;
@@ -158,8 +163,12 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
     tree.depth = settings.depth;
     tree.economies = settings.economies;
     tree.mostMaps = settings.maps;
-    if (road) tree.cutOff = wetCutOff;
+    if (road)
+        tree.cutOff = wetCutOff;
+    else if (std::ranges::any_of(direct, [&](const Candidate& c) { return fronts_[c.front].rough(); }))
+        tree.cutOff = roughCutOff;
     tree.leastPixels = settings.leastPixels;
+    tree.leastLight = leastLight;
     tree.levelScale = settings.levelScale;
     plan.tree = reflection::reflectionTree(eyes, scene, tree);
 
@@ -173,6 +182,7 @@ MirrorPlan MirrorPlanner::plan(std::span<const View> views, const MirrorSettings
         }
         ++counters.shown;
         counters.windows += fronts_[mirrors[m].id].panes;
+        counters.rough += mirrors[m].plane.surface().roughness > 0;
     }
     const reflection::TreeCounters& t = plan.tree.counters;
     counters.passes = t.generated();

@@ -24,6 +24,8 @@ struct MirrorSettings {
     double reach = 220;      ///< metres from the eye beyond which glass is drawn without a map
     double leastPixels =
         250;  ///< of its glass, seen from the eye, below which a front is drawn without a map
+    /// The same of rough glass and stone. Those known to other mirrors alone are always drawn without.
+    double leastRoughPixels = 3000;
     std::uint32_t mostFronts = 48;  ///< given to the tree: the most visible of those that are near
     double texels = 1;              ///< of a reflection's side a pixel
     double levelScale = 0.5;        ///< texels a pixel for each further mirror in a row
@@ -47,6 +49,7 @@ struct MirrorCounters {
     std::uint32_t inView = 0;   ///< of these, seen from the front and large enough, before occlusion
     std::uint32_t shown = 0;    ///< fronts that some map serves
     std::uint32_t windows = 0;  ///< their panes
+    std::uint32_t rough = 0;    ///< of those fronts: polished stone and frosted glass
     bool road = false;          ///< the wet road mirrors
     std::uint32_t passes = 0;   ///< reflections drawn
     std::uint32_t levels = 0;   ///< maps kept: one for each mirror in a row
@@ -61,6 +64,15 @@ inline constexpr double wetTexels = 0.5;
 /// Share of the light below which reflections in a row with wet ground among them are left out: a wet road in
 /// a shop window is 0.024. Where it is left out, ground is wet without an image.
 inline constexpr double wetCutOff = 0.03;
+
+/// Pixels times the share of their light below which a reflection is left out: what the smallest window has
+/// that mirrors, or one of 3,100 pixels in a window.
+inline constexpr double leastLight = 20;
+/// Texels of what polished stone and frosted glass mirror for each pixel: they blur over ten pixels and more
+/// what is not just before them.
+inline constexpr double roughTexels = 1.0 / 6;
+/// With them in view: a shop window in frosted glass is 0.0048, and blurred.
+inline constexpr double roughCutOff = 0.0049;
 
 /// What the flat mirrors of one frame need: plain data.
 struct MirrorPlan {
@@ -102,6 +114,7 @@ class MirrorPlanner {
         double area;
         city::Aabb bounds;
         reflection::MirrorPlane plane;
+        bool rough() const { return plane.surface().roughness > 0; }
     };
     std::vector<Front> fronts_;
 };

@@ -8,6 +8,7 @@
 
 #include "app/frame/Sky.h"
 #include "app/raytrace/Strata.h"
+#include "reflection/planar/Gloss.h"
 
 namespace app {
 
@@ -16,6 +17,22 @@ namespace {
 /// Metres off the surface from which mirror rays start: above the rounding of positions (0.06 mm at 1 km),
 /// below what a panel's shape could show.
 constexpr float offSurface = 0.001f;
+
+/// Rays for what a rough mirror spreads. In mirrors in a row the fewer the less it matters: all of them from
+/// a sixth of the light on.
+int raysFor(const RayPaths::Scene& scene, float matters, bool seenDirectly) {
+    const int most = std::max(scene.film, 1);
+    if (seenDirectly) return most;
+    return std::clamp(static_cast<int>(std::ceil(6 * matters * static_cast<float>(most))), 1, most);
+}
+
+/// A slope of a normal distribution, half as wide as the mirrored directions' (Box and Muller), from two
+/// numbers in [0, 1).
+glm::vec2 slopeOf(const glm::vec2& r, float angle) {
+    const float away = 0.5f * angle * std::sqrt(-2 * std::log(std::max(1 - r.x, 1e-6f)));
+    const float turn = 2 * std::numbers::pi_v<float> * r.y;
+    return away * glm::vec2(std::cos(turn), std::sin(turn));
+}
 
 }  // namespace
 
@@ -61,10 +78,17 @@ void RayPaths::shade(const Scene& scene, const PathRay& from, const reflection::
             const GlassShares shares = glassShares(pane->glass, -cosine);
             const glm::vec3 reflected = mirrorDirection(pane->normal, -ray.direction);
             sums[ray.sum] += ray.weight * shares.through *
-                             shading.city(placed, triangle, pane->weights, level, roomSky, roomSun);
+                             shading.city(placed, triangle, pane->weights, level, behindSky(pane->glass),
+                                          behindSun(pane->glass));
             if (!mirrorAgain) {
                 sums[ray.sum] +=
                     ray.weight * shares.mirrored * meanSurroundings(shading.lighting(), reflected);
+                return;
+            }
+            if (pane->glass.roughness > 0) {
+                PathRay met = ray;
+                met.weight *= shares.mirrored;
+                addRoughRays(scene, *pane, met, footprint, false, next_);
                 return;
             }
             next_.push_back({pane->at, reflected, footprint, ray.spread, ray.weight * shares.mirrored,
@@ -135,23 +159,42 @@ void RayPaths::addWetRays(const Scene& scene, const WetGround& ground, const glm
     }
     const float film = ground.mirrored * (1 - ground.puddle) * wet::filmShare;
     if (!(film > 0)) return;
-    // In mirrors in a row the fewer the less it matters: all of them from a sixth of the light on.
     const float matters = film * std::max({ray.weight.x, ray.weight.y, ray.weight.z});
-    const int most = std::max(scene.film, 1);
-    const int count =
-        seenDirectly
-            ? most
-            : std::clamp(static_cast<int>(std::ceil(6 * matters * static_cast<float>(most))), 1, most);
+    const int count = raysFor(scene, matters, seenDirectly);
     const std::uint64_t key =
         strataKey(scene.seed, std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y));
     const float share = 1 / static_cast<float>(count);
     for (int s = 0; s < count; ++s) {
-        // Slopes of a normal distribution, half as wide as the directions' (Box and Muller).
-        const glm::vec2 r = stratum(key, 0, s, count);
-        const float away = 0.5f * filmAngle() * std::sqrt(-2 * std::log(std::max(1 - r.x, 1e-6f)));
-        const float turn = 2 * std::numbers::pi_v<float> * r.y;
-        add(away * glm::vec2(std::cos(turn), std::sin(turn)), glm::vec3(film * share),
+        add(slopeOf(stratum(key, 0, s, count), filmAngle()), glm::vec3(film * share),
             std::max(ray.spread, filmAngle() * std::sqrt(share)));
+    }
+}
+
+void RayPaths::addRoughRays(const Scene& scene, const GlassPoint& point, const PathRay& ray, float footprint,
+                            bool seenDirectly, std::vector<PathRay>& to) {
+    const glm::vec3& n = point.normal;
+    const glm::vec3 u = glm::normalize(std::abs(n.z) < 0.9f ? glm::cross(n, glm::vec3(0, 0, 1))
+                                                            : glm::cross(n, glm::vec3(1, 0, 0)));
+    const glm::vec3 v = glm::cross(n, u);
+    const auto angle = static_cast<float>(reflection::glossAngle(point.glass.roughness));
+    const float matters = std::max({ray.weight.x, ray.weight.y, ray.weight.z});
+    const int count = raysFor(scene, matters, seenDirectly);
+    const std::uint64_t key = strataKey(scene.seed, std::bit_cast<std::uint32_t>(point.at.x + point.at.y),
+                                        std::bit_cast<std::uint32_t>(point.at.z));
+    const float share = 1 / static_cast<float>(count);
+    for (int s = 0; s < count; ++s) {
+        const glm::vec2 slope = slopeOf(stratum(key, 0, s, count), angle);
+        glm::vec3 direction = mirrorDirection(glm::normalize(n + slope.x * u + slope.y * v), -ray.direction);
+        // What is thrown at the wall comes back from the next facet.
+        if (const float out = glm::dot(direction, n); out < 0) direction -= 2 * out * n;
+        to.push_back({mirrorStart(point.at, n, direction),
+                      direction,
+                      footprint,
+                      std::max(ray.spread, angle * std::sqrt(share)),
+                      ray.weight * share,
+                      ray.sum,
+                      {},
+                      ray.fading + scene.fading});
     }
 }
 

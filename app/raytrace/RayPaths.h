@@ -73,6 +73,10 @@ class RayPaths {
                            const PathRay& ray, float footprint, float distance, bool seenDirectly,
                            std::vector<PathRay>& to);
 
+    /// The same for a pane or stone that mirrors roughly; `ray`: with the mirrored share in its weight.
+    static void addRoughRays(const Scene& scene, const GlassPoint& point, const PathRay& ray, float footprint,
+                             bool seenDirectly, std::vector<PathRay>& to);
+
   private:
     void shade(const Scene& scene, const PathRay& from, const reflection::TracedHit& hit, bool mirrorAgain,
                std::span<glm::vec3> sums);

@@ -132,7 +132,6 @@ std::optional<GlassPoint> RayShading::glass(const PlacedMesh& placed, const MetT
     if (panes.empty()) return std::nullopt;
     GlassPoint point;
     point.normal = triangle.facing();
-    point.glass = city::glassOf(pattern);
     const float cosine = -glm::dot(point.normal, direction);
     if (!(cosine > 0)) return std::nullopt;  // panes are seen from the street
     point.at = triangle.at(weights) - direction * (city::paneOffset / cosine);
@@ -141,8 +140,10 @@ std::optional<GlassPoint> RayShading::glass(const PlacedMesh& placed, const MetT
                                      triangle.corner[2]->texcoord, point.weights);
     const glm::vec2 at = texcoord - glm::floor(texcoord);
     for (const city::PaneOfPattern& pane : panes)
-        if (at.x >= pane.low.x && at.x <= pane.high.x && at.y >= pane.low.y && at.y <= pane.high.y)
+        if (at.x >= pane.low.x && at.x <= pane.high.x && at.y >= pane.low.y && at.y <= pane.high.y) {
+            point.glass = pane.surface;
             return point;
+        }
     return std::nullopt;
 }
 

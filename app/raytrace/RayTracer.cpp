@@ -188,10 +188,24 @@ void RayTracer::Impl::shadePixel(const ViewRays& rays, const GroundShadows& shad
                                       ? shading.glass(placed, triangle, weights, ray.direction)
                                       : std::nullopt) {
                 const GlassShares shares = glassShares(pane->glass, -glm::dot(pane->normal, ray.direction));
-                picture.kind[index] = SeenKind::glass;
+                picture.kind[index] = pane->glass.roughness <= 0             ? SeenKind::glass
+                                      : pane->glass == city::polishedGranite ? SeenKind::stone
+                                                                             : SeenKind::frosted;
                 picture.fresnel[index] = shares.mirrored;
                 picture.radiance[index] =
-                    shares.through * shading.city(placed, triangle, pane->weights, level, roomSky, roomSun);
+                    shares.through * shading.city(placed, triangle, pane->weights, level,
+                                                  behindSky(pane->glass), behindSun(pane->glass));
+                if (pane->glass.roughness > 0) {
+                    const PathRay met{{},
+                                      ray.direction,
+                                      0,
+                                      ray.spread,
+                                      glm::vec3(shares.mirrored),
+                                      static_cast<std::uint32_t>(index),
+                                      {}};
+                    RayPaths::addRoughRays(paths, *pane, met, ray.spread * hit.t, true, out.paths.rays);
+                    return;
+                }
                 pixel.reflect(pane->at, pane->normal);
                 out.paths.rays.push_back({pane->at, mirrorDirection(pane->normal, -ray.direction),
                                           ray.spread * hit.t, ray.spread, glm::vec3(shares.mirrored),

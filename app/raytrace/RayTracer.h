@@ -35,11 +35,12 @@ struct TraceOptions {
     /// vehicles mirror; with 0 of them by mean light. Puddles by one ray a pixel.
     bool wet = false;
     float mirrorFade = 0;  ///< metres behind flat mirrors on which what they show fades to 1/e; 0: not
-    int film = 64;         ///< rays of a pixel for what the film of water on rough ground spreads
+    /// Rays of a pixel for what the film of water on rough ground spreads, and frosted glass, and stone.
+    int film = 64;
 };
 
 /// What a pixel or texel shows.
-enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle, glass, water };
+enum class SeenKind : std::uint8_t { sky, city, lamp, vehicle, glass, water, frosted, stone };
 
 /// A ray traced picture, one sample a pixel for what is seen directly (as the rasteriser without
 /// antialiasing), top row first.

@@ -31,12 +31,14 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         PassView pass = passOf(node, share);
         pass.skyline = my_.skylines.through(node.view, &node.glass);
         setFrame(pass, &node);
+        drawOnlyWhereShown(node);
         my_.chosen.clear();
         for (const VisibleVehicle& v : my_.visible(pass)) my_.chosen.push_back(v.index);
         // A coarse body's normals bend what its paint mirrors, which shows where its shape does not:
         // vehicles are as fine in a mirror as outside it, and coarser only in mirrors in a row.
         PassView fine = pass;
-        if (node.coarser > 0) fine.pixelsPerRadian *= 2;
+        // Nor does it where it is blurred.
+        if (node.coarser > 0 && node.roughness <= 0) fine.pixelsPerRadian *= 2;
         const VehiclePass::Counts vehicles = my_.vehiclePass.draw(
             fine, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
             static_cast<float>(my_.detail.vehicleTolerance));
@@ -69,13 +71,30 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         my_.cityPass.bindMaterials();
         my_.fronts.clear();
         for (const std::uint32_t m : plan_.tree.mirrorsOf(node)) my_.fronts.push_back(plan_.fronts[m]);
-        if (my_.glassPass)
-            my_.glassPass->draw(parent != nullptr ? PassTarget::cube : PassTarget::view, my_.fronts, &map);
+        if (!my_.glassPass) return;
+        GlassPass::Mirrored mirrored;
+        mirrored.map = map;
+        const reflection::EyeView& view = parent != nullptr ? parent->view : plan_.tree.roots[node.root].view;
+        const glm::dmat4& clip = parent != nullptr ? parent->clipFromView : view.clipFromView;
+        mirrored.viewFromRelative = glm::mat3(view.viewFromWorld);
+        mirrored.uvPerTangent = 0.5f * glm::vec2(target.viewport.size()) *
+                                glm::vec2(map.uvFromFragment.x * static_cast<float>(clip[0][0]),
+                                          map.uvFromFragment.y * static_cast<float>(clip[1][1]));
+        my_.glassPass->draw(parent != nullptr ? PassTarget::cube : PassTarget::view, my_.fronts, &mirrored);
     }
 
     std::uint64_t triangles = 0;
 
   private:
+    /// Of an image that is looked up where its panes are and nowhere else, the rest need not be drawn:
+    /// between panes, below a row of them that runs away from the eye. Rough ones look around; the road is
+    /// all there is.
+    void drawOnlyWhereShown(const reflection::ReflectionNode& node) {
+        if (node.roughness > 0 || !my_.paneMask || isRoad(node)) return;
+        my_.fronts.clear();
+        for (const std::uint32_t m : plan_.tree.mirrorsOf(node)) my_.fronts.push_back(plan_.fronts[m]);
+        my_.paneMask->draw(node, my_.fronts);
+    }
     /// Each mirror on the way fades all that it shows, what other mirrors show in it included.
     void setFrame(const PassView& pass, const reflection::ReflectionNode* node) {
         if (node == nullptr || plan_.fade <= 0) {

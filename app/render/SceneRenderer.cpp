@@ -41,6 +41,7 @@ void SceneRenderer::prepare(const FrameScene& scene) {
 
 void SceneRenderer::setGlass(std::span<const city::GlassFront> fronts) {
     impl_->glassPass = fronts.empty() ? nullptr : std::make_unique<GlassPass>(fronts);
+    impl_->paneMask = fronts.empty() ? nullptr : std::make_unique<PaneMask>(fronts);
     impl_->frontBounds.clear();
     for (const city::GlassFront& front : fronts) impl_->frontBounds.push_back(front.bounds);
 }

@@ -14,6 +14,7 @@
 #include "app/render/FrameUniforms.h"
 #include "app/render/GlassPass.h"
 #include "app/render/NodeView.h"
+#include "app/render/PaneMask.h"
 #include "app/render/SceneRenderer.h"
 #include "app/render/ShadowMap.h"
 #include "app/render/SignalLamps.h"
@@ -139,6 +140,7 @@ struct SceneRenderer::Impl {
     std::vector<city::Aabb> frontBounds, liveFronts;  ///< of the glass: all, and those that mirror now
 
     std::unique_ptr<GlassPass> glassPass;
+    std::unique_ptr<PaneMask> paneMask;
     std::unique_ptr<reflection::MirrorPass> mirrorPass;  ///< while plans need it
     std::vector<bool> mapped;
     std::vector<std::uint32_t> fronts;

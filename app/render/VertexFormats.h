@@ -28,7 +28,7 @@ struct CityVertex {
 };
 static_assert(sizeof(CityVertex) == 28);
 
-/// A vertex of a pane of glass: 28 bytes.
+/// A vertex of a pane of glass or of polished stone: 32 bytes.
 struct GlassVertex {
     glm::vec3 position;    ///< world metres
     glm::vec2 texcoord;    ///< repeats of the pattern of what is seen behind
@@ -36,8 +36,10 @@ struct GlassVertex {
     std::uint16_t material;
     std::uint8_t reflectance;    ///< at normal incidence, 255 = all
     std::uint8_t transmittance;  ///< the same
+    std::uint16_t glossAngle;    ///< of reflection/planar/Gloss.h, 65535: one radian
+    std::uint16_t solid;         ///< 65535: what is painted lies at the surface; 0: in a room behind it
 };
-static_assert(sizeof(GlassVertex) == 28);
+static_assert(sizeof(GlassVertex) == 32);
 
 /// A vertex of a vehicle: 20 bytes.
 struct VehicleVertex {

@@ -10,15 +10,24 @@ namespace city {
 
 namespace {
 
-// The same rectangles as paintShopFront and paintGlassFacade draw; a test looks at their pictures.
-constexpr std::array<PaneOfPattern, 4> shopPanes{{{{0.065f, 0.115f}, {0.335f, 0.765f}},
-                                                  {{0.35f, 0.115f}, {0.605f, 0.765f}},
-                                                  {{0.7f, 0.13f}, {0.9f, 0.6f}},
-                                                  {{0.7f, 0.63f}, {0.9f, 0.76f}}}};
-constexpr std::array<PaneOfPattern, 4> curtainPanes{{{{0.012f, 0.27f}, {0.488f, 0.985f}},
-                                                     {{0.512f, 0.27f}, {0.988f, 0.985f}},
-                                                     {{0.012f, 0.02f}, {0.488f, 0.25f}},
-                                                     {{0.512f, 0.02f}, {0.988f, 0.25f}}}};
+// The same rectangles as paintShopFront, paintGlassFacade and paintStoneFront draw; a test looks at their
+// pictures.
+constexpr std::array<PaneOfPattern, 4> shopPanes{{{{0.065f, 0.115f}, {0.335f, 0.765f}, clearGlass},
+                                                  {{0.35f, 0.115f}, {0.605f, 0.765f}, clearGlass},
+                                                  {{0.7f, 0.13f}, {0.9f, 0.6f}, clearGlass},
+                                                  {{0.7f, 0.63f}, {0.9f, 0.76f}, clearGlass}}};
+constexpr std::array<PaneOfPattern, 4> curtainPanes{{{{0.012f, 0.27f}, {0.488f, 0.985f}, sunGlass},
+                                                     {{0.512f, 0.27f}, {0.988f, 0.985f}, sunGlass},
+                                                     {{0.012f, 0.02f}, {0.488f, 0.25f}, sunGlass},
+                                                     {{0.512f, 0.02f}, {0.988f, 0.25f}, sunGlass}}};
+constexpr std::array<PaneOfPattern, 8> stonePanes{{{{0.065f, 0.43f}, {0.335f, 0.765f}, clearGlass},
+                                                   {{0.35f, 0.43f}, {0.605f, 0.765f}, clearGlass},
+                                                   {{0.7f, 0.63f}, {0.9f, 0.76f}, clearGlass},
+                                                   {{0.065f, 0.175f}, {0.335f, 0.43f}, frostedGlass},
+                                                   {{0.35f, 0.175f}, {0.605f, 0.43f}, frostedGlass},
+                                                   {{0.7f, 0.13f}, {0.9f, 0.6f}, frostedGlass},
+                                                   {{0, 0}, {0.67f, 0.155f}, polishedGranite},
+                                                   {{0.93f, 0}, {1, 0.155f}, polishedGranite}}};
 
 /// A normal's z beyond which a wall is no wall: 3 degrees.
 constexpr double leastUpright = 0.05;
@@ -142,16 +151,27 @@ class Finder {
             high = glm::max(high, wall.back());
         }
         if (!(high.x - low.x < mostRepeats && high.y - low.y < mostRepeats)) return;
+        std::vector<GlassSurface> surfaces;
+        for (const PaneOfPattern& pane : panesOf(pattern))
+            if (std::ranges::find(surfaces, pane.surface) == surfaces.end()) surfaces.push_back(pane.surface);
+        for (const GlassSurface& surface : surfaces)
+            addFront(map, wall, low, high, normal, pattern, a.material, surface);
+    }
 
+    /// The panes of one kind in a piece of wall.
+    void addFront(const Mapping& map, const Polygon& wall, const glm::dvec2& low, const glm::dvec2& high,
+                  const glm::dvec3& normal, Pattern pattern, std::uint32_t material,
+                  const GlassSurface& surface) {
         GlassFront front;
         front.normal = normal;
         front.pattern = pattern;
-        front.glass = glassOf(pattern);
+        front.glass = surface;
         glm::dvec2 glassLow(std::numeric_limits<double>::infinity()), glassHigh = -glassLow;
         const double metresPerUv = glm::length(glm::cross(map.perU, map.perV));
         for (double row = std::floor(low.y); row < high.y; ++row) {
             for (double column = std::floor(low.x); column < high.x; ++column) {
                 for (const PaneOfPattern& pane : panesOf(pattern)) {
+                    if (pane.surface != surface) continue;
                     const glm::dvec2 from = glm::dvec2(column, row) + glm::dvec2(pane.low);
                     const glm::dvec2 to = glm::dvec2(column, row) + glm::dvec2(pane.high);
                     Polygon glass = cut(cut(wall, 0, from.x, -1), 0, to.x, 1);
@@ -159,7 +179,7 @@ class Finder {
                     const double area = std::abs(signedArea(glass)) * metresPerUv;
                     // A sliver at a wall's end is frame.
                     if (glass.size() < 3 || area < 0.05) continue;
-                    append(front, glass, map, normal, a.material);
+                    append(front, glass, map, normal, material);
                     front.area += area;
                     ++front.paneCount;
                     for (const glm::dvec2& p : glass) {
@@ -180,7 +200,11 @@ class Finder {
         if (glm::dot(glm::cross(map.perU, map.perV), normal) < 0)
             std::swap(front.outline[1], front.outline[3]);
         front.bounds = front.panes.bounds();
-        ++(pattern == Pattern::shopFront ? found_.census.shopFronts : found_.census.curtainWalls);
+        GlassCensus& census = found_.census;
+        ++(surface == frostedGlass           ? census.frosted
+           : surface == polishedGranite      ? census.stones
+           : pattern == Pattern::facadeGlass ? census.curtainWalls
+                                             : census.shopFronts);
         found_.census.panes += front.paneCount;
         found_.census.area += front.area;
         found_.fronts.push_back(std::move(front));
@@ -205,11 +229,7 @@ class Finder {
 std::span<const PaneOfPattern> panesOf(Pattern pattern) {
     if (pattern == Pattern::shopFront) return shopPanes;
     if (pattern == Pattern::facadeGlass) return curtainPanes;
-    return {};
-}
-
-GlassSurface glassOf(Pattern pattern) {
-    if (pattern == Pattern::facadeGlass) return {0.25f, 0.6f};
+    if (pattern == Pattern::stoneFront) return stonePanes;
     return {};
 }
 

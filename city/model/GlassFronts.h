@@ -14,26 +14,38 @@
 
 namespace city {
 
-/// A pane of glass within one repeat of a facade's pattern, in texture coordinates.
-struct PaneOfPattern {
-    glm::vec2 low{0}, high{0};
-};
-
-/// Where the pictures of facades (PatternImages) have panes that are large enough to mirror a street: the
-/// windows and doors of shop fronts, all the glass of curtain walls. Empty for all other patterns: the
-/// windows of plastered, brick and stone fronts are small, divided and curtained, and stay painted.
-std::span<const PaneOfPattern> panesOf(Pattern pattern);
-
-/// What glass does to light that falls on it straight.
+/// What a polished or glazed surface does to light that falls on it straight.
 struct GlassSurface {
     float reflectance = 0.08f;    ///< of the whole pane, both of its faces, at normal incidence
     float transmittance = 0.85f;  ///< of what lies behind, at normal incidence
+    float roughness = 0;          ///< of MirrorPlane: 0 mirrors sharply
+    /// What is painted on the wall lies at the surface, in the light of the street, and is not a room behind
+    /// it: polished stone's grain, the milk of frosted glass.
+    bool solid = false;
+
+    bool operator==(const GlassSurface&) const = default;
 };
 /// Clear plate glass (refractive index 1.52: two faces of 4.3% each) for shops, coated sun glass for curtain
 /// walls. Measured panes: 0.08 and 0.15 to 0.35.
-GlassSurface glassOf(Pattern pattern);
+inline constexpr GlassSurface clearGlass{}, sunGlass{0.25f, 0.6f};
+/// Satin: one face is etched, with slopes of 4 degrees, that spread what it mirrors by 7.
+inline constexpr GlassSurface frostedGlass{0.06f, 0.92f, 0.3f, true};
+/// Feldspar and quartz, refractive index 1.54; the polish leaves 1 degree.
+inline constexpr GlassSurface polishedGranite{0.045f, 0.95f, 0.15f, true};
 
-/// The panes of one stretch of wall, all in one vertical plane: a planar reflector.
+/// A pane within one repeat of a facade's pattern, in texture coordinates.
+struct PaneOfPattern {
+    glm::vec2 low{0}, high{0};
+    GlassSurface surface;
+};
+
+/// Where the pictures of facades (PatternImages) have panes that are large enough to mirror a street: the
+/// windows and doors of shop fronts, all the glass of curtain walls; of stone fronts the polished base and
+/// the frosted glass as well. Empty for all other patterns: the windows of plastered, brick and stone fronts
+/// are small, divided and curtained, and stay painted.
+std::span<const PaneOfPattern> panesOf(Pattern pattern);
+
+/// The panes of one stretch of wall that are alike, all in one vertical plane: a planar reflector.
 struct GlassFront {
     glm::dvec3 normal{1, 0, 0};  ///< unit, horizontal, into the street
     /// Rectangle around all panes, world metres, counter-clockwise seen from the street; it lies in the
@@ -51,7 +63,8 @@ struct GlassFront {
 
 /// What was looked at and left out, in words and numbers for those who ask why.
 struct GlassCensus {
-    std::size_t shopFronts = 0, curtainWalls = 0;  ///< listed fronts of either kind
+    std::size_t shopFronts = 0, curtainWalls = 0;  ///< listed fronts of either kind, smooth
+    std::size_t frosted = 0, stones = 0;           ///< the same of frosted glass and of polished stone
     std::size_t panes = 0;
     double area = 0;             ///< of all panes, square metres
     std::size_t planes = 0;      ///< sets of coplanar fronts: mirror views that would show them all
@@ -71,10 +84,10 @@ inline constexpr float paneOffset = 0.01f;
 /// Square metres of glass below which a front is left out.
 inline constexpr double leastGlass = 1.0;
 
-/// Finds the glass of a city by its walls' materials and texture coordinates, generated and imported cities
-/// alike. Panes that a wall's end cuts are kept as what is left of them. Order: chunks, then triangles.
-/// Degenerate walls (no area, no extent of the texture, not finite) give nothing. Cost: linear in triangles
-/// and panes; `planes` takes fronts times planes.
+/// Finds the glass and the polished stone of a city by its walls' materials and texture coordinates,
+/// generated and imported cities alike. Panes that a wall's end cuts are kept as what is left of them. Order:
+/// chunks, then triangles. Degenerate walls (no area, no extent of the texture, not finite) give nothing.
+/// Cost: linear in triangles and panes; `planes` takes fronts times planes.
 GlassFronts glassFronts(const CityModel& city);
 
 }  // namespace city

@@ -1,5 +1,6 @@
 #version 450 core
-// Glass: what lies behind it and what it mirrors, mixed by Fresnel's law. MIRROR: with a reflection map; without: from mean light.
+// Glass and polished stone: what lies behind or within and what is mirrored, mixed by Fresnel's law. MIRROR: with a reflection map; without:
+// from mean light. ROUGH: the map blurred, the more the farther behind the surface things are seen.
 #include "frame.glsl"
 #include "output.glsl"
 #ifdef MIRROR
@@ -17,6 +18,12 @@ layout(location = 4) in vec3 shadowCoordinate;
 layout(location = 5) in vec3 relative;
 layout(location = 6) flat in vec3 normal;
 layout(location = 7) flat in vec2 glass;  // reflectance, transmittance at normal incidence
+layout(location = 8) flat in float gloss;  // radians
+#ifdef ROUGH
+uniform mat3 viewFromRelative;  // of the image in which the surface is met
+uniform vec2 uvPerTangent;      // texture coordinates for one unit of x / -z in view space
+uniform int blurLevels;
+#endif
 
 void main() {
     vec4 texel = texture(patterns, vec3(texcoord, layer));
@@ -27,7 +34,13 @@ void main() {
     float grazing2 = grazing * grazing;
     float more = grazing2 * grazing2 * grazing;  // Schlick
     float fresnel = glass.x + (1.0 - glass.x) * more;
-#ifdef MIRROR
+#ifdef ROUGH
+    vec3 along, across;
+    mirrorSpread(-towardsEye, normal, gloss, along, across);
+    vec3 v = viewFromRelative * -towardsEye;
+    vec3 mirrored = mirrorGlossDim(gl_FragCoord.xy, mirrorMovement(v, viewFromRelative * along, uvPerTangent),
+                                mirrorMovement(v, viewFromRelative * across, uvPerTangent), blurLevels);
+#elif defined MIRROR
     vec3 mirrored = mirrorSharp(gl_FragCoord.xy, vec2(0.0));
 #else
     vec3 reflected = 2.0 * facing * normal - towardsEye;

@@ -79,6 +79,26 @@ vec3 mirrorGlossAt(vec2 uv, vec4 limits, vec2 along, vec2 across, int levels) {
     return sum;
 }
 
+// The same for mirrors that show little of what they mirror, four or five lookups in place of ten to sixteen: what is mixed in is as far behind
+// the glass as the neighbourhood, and the rest of the spread along the plane of incidence three lookups.
+vec3 mirrorGlossDim(vec2 fragment, vec2 along, vec2 across, int levels) {
+    vec4 limits = uvLimits * blurredScale.xyxy;
+    vec2 uv = clamp(mirrorUv(fragment) * blurredScale, limits.xy, limits.zw);
+    along *= blurredScale;
+    across *= blurredScale;
+    vec2 size = vec2(textureSize(mirrorBlurred, 0));
+    float longest = length(along * size), shortest = min(length(across * size), longest);
+    float behind = mirrorQuick(uv, 0.5 * shortest, levels).a;
+    float rest = sqrt(max(longest * longest - shortest * shortest, 0.0)) * behind;
+    // Three lookups with weights 1 4 1 have a variance of a third of the stride's square.
+    vec2 stride = along / max(longest, 1e-6) * rest * 1.7320508;
+    float sigma = max(behind * shortest, 0.4 * length(stride * size));
+    vec3 sum = 4.0 * mirrorQuick(uv, sigma, levels).rgb;
+    sum += mirrorQuick(clamp(uv - stride, limits.xy, limits.zw), sigma, levels).rgb;
+    sum += mirrorQuick(clamp(uv + stride, limits.xy, limits.zw), sigma, levels).rgb;
+    return sum / 6.0;
+}
+
 // The same at a fragment, coordinates those of mirrorColour.
 vec3 mirrorGloss(vec2 fragment, vec2 shift, vec2 along, vec2 across, int levels) {
     vec4 limits = uvLimits * blurredScale.xyxy;

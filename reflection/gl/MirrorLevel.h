@@ -33,15 +33,23 @@ class MirrorLevel {
             glNamedFramebufferDrawBuffers(framebuffer.name(), 2, both);
         }
         framebuffer.requireComplete("a mirror's map");
+        if (!withDistance_) return;
+        colourAlone = Framebuffer::create();
+        colourAlone.attach(GL_COLOR_ATTACHMENT0, colour.name()).attach(GL_DEPTH_ATTACHMENT, depth.name());
+        colourAlone.requireComplete("a mirror's map");
     }
     const glm::ivec2& size() const { return size_; }
     bool withDistance() const { return withDistance_; }
+    /// To draw into: writing distance that nobody reads takes time.
+    const Framebuffer& target(bool distanceWanted) const {
+        return withDistance_ && !distanceWanted ? colourAlone : framebuffer;
+    }
     std::uint64_t texels() const {
         return static_cast<std::uint64_t>(size_.x) * static_cast<std::uint64_t>(size_.y);
     }
 
     Texture colour, depth, distance;
-    Framebuffer framebuffer;
+    Framebuffer framebuffer, colourAlone;  ///< with all there is; without distance, where there is some
 
   private:
     glm::ivec2 size_{0};

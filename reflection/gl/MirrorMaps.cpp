@@ -34,8 +34,20 @@ void bind(const MirrorTarget& target) {
 }
 
 void MirrorMaps::look(const ReflectionTree& tree) {
-    withDistance_ = options_.distances || (options_.nearness && !tree.environments.empty());
-    for (const ReflectionNode& n : tree.nodes) withDistance_ = withDistance_ || rough(n);
+    const bool all = options_.distances || (options_.nearness && !tree.environments.empty());
+    nodeWithDistance_.assign(tree.nodes.size(), all);
+    withDistance_ = all;
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const ReflectionNode& n = tree.nodes[i];
+        const bool above = n.parent != ReflectionNode::none && nodeWithDistance_[n.parent];
+        nodeWithDistance_[i] = all || above || rough(n);
+        withDistance_ = withDistance_ || nodeWithDistance_[i];
+    }
+}
+
+bool MirrorMaps::withDistance(const ReflectionTree& tree, const ReflectionNode& node) const {
+    const auto index = static_cast<std::size_t>(&node - tree.nodes.data());
+    return index < nodeWithDistance_.size() && nodeWithDistance_[index];
 }
 
 bool MirrorMaps::rough(const ReflectionNode& node) const {
@@ -69,10 +81,11 @@ MirrorImage MirrorMaps::draw(const ReflectionTree& tree, const ReflectionNode& n
     MirrorImage image;
     image.node = &node;
     image.crop = node.crop;
-    image.target.framebuffer = level.framebuffer.name();
+    const bool distance = level.withDistance() && withDistance(tree, node);
+    image.target.framebuffer = level.target(distance).name();
     image.target.viewport = {origin, origin + node.resolution};
     image.target.scissor = {origin + node.scissor.low, origin + node.scissor.high};
-    image.target.withDistance = level.withDistance();
+    image.target.withDistance = distance;
     image.target.mirrored = node.view.mirrored();
     bind(image.target);
     if (!cleared) {
@@ -106,7 +119,7 @@ void MirrorMaps::apply(const ReflectionTree& tree, const ReflectionNode& node, M
     MirrorMap map;
     map.colour = level.colour.name();
     map.texels = glm::vec2(level.size());
-    if (level.withDistance()) map.distance = level.distance.name();
+    if (level.withDistance() && withDistance(tree, node)) map.distance = level.distance.name();
     const glm::dvec2 pixels(glm::max(parent.target.viewport.size(), glm::ivec2(1)));
     // Fragment of the parent's target -> its whole image -> what of it the map shows -> texture.
     const glm::dvec2 texel = 1.0 / glm::dvec2(level.size()), part = glm::dvec2(node.resolution) * texel;

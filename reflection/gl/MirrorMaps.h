@@ -54,11 +54,14 @@ class MirrorMaps {
   private:
     bool rough(const ReflectionNode& node) const;
     double widestBlur(const ReflectionNode& node) const;
+    bool withDistance(const ReflectionTree& tree, const ReflectionNode& node) const;
 
     MirrorPassOptions options_;
     std::vector<MirrorLevel> levels_;
     MirrorBlur blur_;
-    bool withDistance_ = false;  ///< some mirror is rough, and way lengths add up through all
+    bool withDistance_ = false;  ///< some node has distance
+    /// Of each node of the tree looked at: it is rough, or met in one that is: way lengths add up.
+    std::vector<bool> nodeWithDistance_;
 };
 
 }  // namespace reflection::gl

@@ -54,6 +54,9 @@ struct TreeSettings {
     int faceSize = 128;           ///< of environment maps
     double levelScale = 1;        ///< texels a pixel, for each level of recursion; 0 < levelScale <= 1
     double cutOff = 1.0 / 256;    ///< share of the light, at normal incidence in the strongest channel
+    /// Pixels times the share of their light below which a reflection is left out, too: what is dim may be
+    /// large, what is small bright. With `Economies::cutOff`.
+    double leastLight = 0;
     std::uint32_t mostMaps = 64;  ///< planar and view-dependent ones a frame
     double leastPixels = 1;       ///< mirrors that cover less are off screen
     /// View-independent maps are made anew this frame; false: momentarily static, all have theirs.

@@ -387,6 +387,11 @@ void TreeBuilder::meetCurved(const Image& image) {
 }
 
 void TreeBuilder::push(Candidate&& candidate) {
+    if (settings_.economies.cutOff &&
+        candidate.node.pixels * strongest(candidate.node.throughput) < settings_.leastLight) {
+        ++tree_.counters.belowCutOff;
+        return;
+    }
     candidate.sequence = sequence_++;
     // Without a cap the order of taking does not matter; first come first served keeps the queue short.
     candidate.priority =

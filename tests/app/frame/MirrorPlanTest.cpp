@@ -63,6 +63,85 @@ TEST(MirrorPlan, CoplanarFrontsShareOneReflection) {
     for (const auto& node : plan.tree.nodes) EXPECT_TRUE(node.view.mirrored());
 }
 
+/// Polished stone or frosted glass.
+city::GlassFront roughFront(const glm::dvec3& foot, const glm::dvec3& along,
+                            const city::GlassSurface& surface) {
+    city::GlassFront f = front(foot, along);
+    f.glass = surface;
+    return f;
+}
+
+TEST(MirrorPlan, RoughFrontsHaveASmallViewOfTheirOwnAndPanesKeepTheirs) {
+    const app::View view = viewFrom({4, 1, 1.7}, {5, 7, 1.5});
+    std::vector<city::GlassFront> fronts{front({0, 7, 1.5}, east)};
+    MirrorSettings settings;
+    settings.depth = 1;
+    const MirrorPlan clear = planOf(fronts, view, settings);
+    ASSERT_EQ(clear.counters.passes, 1u);
+    EXPECT_EQ(clear.counters.rough, 0u);
+    // Both kinds in the plane of the panes.
+    fronts.push_back(roughFront({0, 7, 0.2}, east, city::polishedGranite));
+    fronts.push_back(roughFront({1, 7, 0.8}, east, city::frostedGlass));
+    const MirrorPlan plan = planOf(fronts, view, settings);
+    EXPECT_EQ(plan.counters.inCity, 3u);
+    EXPECT_EQ(plan.counters.shown, 3u);
+    EXPECT_EQ(plan.counters.rough, 2u);
+    ASSERT_EQ(plan.counters.passes, 2u);  // one for the panes, one for both rough ones
+    for (const auto& node : plan.tree.nodes) {
+        const auto mirrors = plan.tree.mirrorsOf(node);
+        if (node.roughness > 0) {
+            EXPECT_EQ(mirrors.size(), 2u);
+            EXPECT_EQ(node.roughness, city::frostedGlass.roughness);
+            EXPECT_LE(node.resolution.x, static_cast<int>(app::roughTexels * view.size.x) + 1);
+            EXPECT_LE(node.resolution.y, static_cast<int>(app::roughTexels * view.size.y) + 1);
+        } else {
+            ASSERT_EQ(mirrors.size(), 1u);
+            EXPECT_EQ(plan.fronts[mirrors[0]], 0u);
+            EXPECT_EQ(node.resolution, clear.tree.nodes[0].resolution);
+        }
+    }
+}
+
+TEST(MirrorPlan, SmallOrUnseenRoughFrontsAreDrawnWithoutAMap) {
+    const std::vector<city::GlassFront> one{roughFront({0, 7, 0.5}, east, city::polishedGranite)};
+    MirrorSettings settings;
+    EXPECT_EQ(planOf(one, viewFrom({4, 1, 1.7}, {4, 7, 1.5}), settings).counters.rough, 1u);
+    const app::View far = viewFrom({4, -60, 1.7}, {4, 7, 1.5});
+    EXPECT_TRUE(planOf(one, far, settings).empty());
+    settings.leastRoughPixels = settings.leastPixels;  // it is that setting which leaves it out
+    EXPECT_EQ(planOf(one, far, settings).counters.rough, 1u);
+    // Behind the eye, where a pane before it could show them.
+    const std::vector<city::GlassFront> facing{front({0, 7, 0.5}, east),
+                                               roughFront({8, -7, 0.5}, west, city::frostedGlass)};
+    settings = {};
+    settings.economies.cutOff = false;
+    const app::View view = viewFrom({4, 2, 1.7}, {4, 7, 1.5});
+    EXPECT_EQ(planOf(facing, view, settings).counters.passes, 1u);
+    const std::vector<city::GlassFront> panes{front({0, 7, 0.5}, east), front({8, -7, 0.5}, west)};
+    EXPECT_EQ(planOf(panes, view, settings).counters.passes, 2u);
+}
+
+TEST(MirrorPlan, RoughnessOfNoneAndAllIsPlannedAndWhatIsNoRoughnessRefused) {
+    const app::View view = viewFrom({4, 1, 1.7}, {4, 7, 1.5});
+    const auto withRoughness = [&](float roughness) {
+        city::GlassSurface surface;
+        surface.roughness = roughness;
+        return planOf({roughFront({0, 7, 0.5}, east, surface)}, view);
+    };
+    EXPECT_EQ(withRoughness(0).counters.passes, 1u);
+    EXPECT_EQ(withRoughness(0).counters.rough, 0u);
+    const MirrorPlan matt = withRoughness(1);
+    ASSERT_EQ(matt.counters.passes, 1u);
+    EXPECT_EQ(matt.counters.rough, 1u);
+    EXPECT_GE(matt.tree.nodes[0].resolution.x, 1);
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), -0.1f, 1.5f, std::numeric_limits<float>::infinity()}) {
+        const MirrorPlan none = withRoughness(bad);
+        EXPECT_TRUE(none.empty());
+        EXPECT_EQ(none.counters.inCity, 0u);
+    }
+}
+
 TEST(MirrorPlan, FacingFrontsAreMetAgainAtEveryDepth) {
     const auto fronts = street(3);
     const app::View view = viewFrom({5, -2, 2}, {5, 7, 1.8});

@@ -181,6 +181,56 @@ TEST_F(WindowsGlTest, aWindowShowsTheMirroredCity) {
     }
 }
 
+TEST_F(WindowsGlTest, aRoughFrontShowsTheMirroredCitySpread) {
+    const View view = lookAt({0, -4, 1.7}, {0.5, glassY, 2.4}, 1.2, size);
+    const auto rough = [](float roughness) {
+        city::GlassFront front = pane(-8, 9, glassY, 0.4, 5, false);
+        front.glass = {1, 0, roughness, true};
+        return front;
+    };
+    const city::CityModel city = street(true);
+    const Image8 sharp = picture(city, {rough(0)}, view, 1, false);
+    const Image8 seen = picture(city, {rough(0.3f)}, view, 1, false);
+    ASSERT_EQ(passes_, 1u);
+    const Image8 black = picture(city, {blackened(pane(-8, 9, glassY, 0.4, 5, false))}, view, 0, false);
+    const auto onGlass = [&](std::size_t at) {
+        return black.rgba[at] <= 1 && black.rgba[at + 1] <= 1 && black.rgba[at + 2] <= 1;
+    };
+    const auto texel = [&](int x, int y) { return static_cast<std::size_t>((y * size.x + x) * 4); };
+    double steps = 0, sharpSteps = 0, sum = 0, sharpSum = 0;
+    int pixels = 0;
+    for (int y = 1; y < size.y; ++y) {
+        for (int x = 1; x < size.x; ++x) {
+            const std::size_t at = texel(x, y), left = texel(x - 1, y);
+            if (!onGlass(at) || !onGlass(left)) continue;
+            for (std::size_t c = 0; c < 3; ++c) {
+                steps += std::abs(int(seen.rgba[at + c]) - int(seen.rgba[left + c]));
+                sharpSteps += std::abs(int(sharp.rgba[at + c]) - int(sharp.rgba[left + c]));
+                sum += seen.rgba[at + c];
+                sharpSum += sharp.rgba[at + c];
+            }
+            ++pixels;
+        }
+    }
+    ASSERT_GT(pixels, 5000);
+    // Soft: its pixels differ from their neighbours' by less than the sharp ones' do, but for what stands
+    // close to the glass and the large shapes. As bright on the whole: display values bend downwards, so that
+    // a mixture of sky and walls is brighter than the mean of both, and never darker.
+    EXPECT_LT(steps, 0.6 * sharpSteps);
+    EXPECT_GT(steps, 0.02 * sharpSteps);
+    EXPECT_GT(sum / sharpSum, 0.98);
+    EXPECT_LT(sum / sharpSum, 1.25);
+    // All but smooth: the smooth picture, but for its texels' size.
+    const Image8 nearly = picture(city, {rough(0.01f)}, view, 1, false);
+    const city::GlassFront front = rough(0);
+    EXPECT_LT(within(nearly, sharp, black, front, view).mean, within(seen, sharp, black, front, view).mean);
+    // Too small to be worth a map: mean light, and no pass.
+    MirrorSettings settings;
+    settings.leastRoughPixels = 1e9;
+    const std::vector<city::GlassFront> one{rough(0.3f)};
+    EXPECT_TRUE(MirrorPlanner(one).plan(std::span(&view, 1), settings).empty());
+}
+
 TEST_F(WindowsGlTest, aWindowInAWindowShowsTheCityMirroredTwice) {
     const city::GlassFront north = pane(-8, 9, glassY, 0.4, 5, false);
     const city::GlassFront south = pane(-4, 4, facingY, 0.4, 5.5, true);
