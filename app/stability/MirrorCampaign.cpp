@@ -192,6 +192,64 @@ std::vector<Row> depthSteps(const Options& options) {
     return rows;
 }
 
+/// Eyes nearer to a pane than any near plane: what stands anywhere before it, a millionth of its distance
+/// from the glass or ten thousand times that distance, is drawn, at the pixel at which the pane shows it.
+Row nearPanes(const Options& options, SeededRandom& random) {
+    Row row{"mirrors",
+            "eye 1e-6 to 0.1 m before a pane: what it shows is drawn, in its place",
+            0,
+            0,
+            0,
+            1e-6,
+            "of half the picture",
+            "the eye behind the glass is rounded at 1e-16 of a metre, 1e-10 of the smallest height",
+            ""};
+    for (int i = 0; i < 4000 * options.effort() && !options.stop(); ++i) {
+        const MirrorResult made =
+            MirrorPlane::make(polygon(random, random.unit() * direction(random), direction(random), 1));
+        if (made.status != MirrorStatus::ok) continue;
+        const MirrorPlane& m = made.mirror;
+        const double height = random.magnitude(1e-6, 0.1);
+        const glm::dvec3 along = glm::normalize(glm::cross(m.normal(), direction(random)));
+        const glm::dvec3 eye = m.point() + random.between(0, 2) * along + height * m.normal();
+        const EyeView view = perspectiveView(eye, m.point() + 0.2 * direction(random), 1.2, 1.5,
+                                             random.oneIn(2) ? 0.1 : 0.1 * height);
+        const Portal portal = portalThrough(view, frustumOf(view), m);
+        const MirrorView seen = mirrorView(view, m);
+        if (portal.status != PortalStatus::ok || seen.status != MirrorViewStatus::ok) continue;
+        ++row.tried;
+        const HalfSpaces frustum = frustumThrough(portal, seen.view, m);
+        EyeView leaning = seen.view;
+        leaning.clipFromView = obliqueNear(seen.view, m).clipFromView;
+        // Somewhere on what is visible of the pane, and somewhere on the ray beyond it.
+        glm::dvec3 on(0);
+        double sum = 0;
+        for (const glm::dvec3& c : portal.polygon) {
+            const double weight = 0.01 + random.unit();
+            on += weight * c;
+            sum += weight;
+        }
+        on /= sum;
+        const glm::dvec3 ray = eye + on - seen.view.eye;
+        const glm::dvec3 p = seen.view.eye + (1 + random.magnitude(1e-6, 1e4)) * ray;
+        const glm::dvec4 here = view.clip(eye + on), there = seen.view.clip(p), lean = leaning.clip(p);
+        const double off = std::max(std::abs(here.x / here.w - there.x / there.w),
+                                    std::abs(here.y / here.w - there.y / there.w));
+        row.worst = std::max(row.worst, off);
+        // Roundings at the edges of what is visible, of sums of metres; a leaning plane's of depths near 1.
+        const bool drawn = touches(frustum, p - seen.view.eye, 1e-9 * (1 + glm::length(p - seen.view.eye))) &&
+                           m.signedDistance(p) > 0 && there.w > 0 && there.z <= there.w * (1 + 1e-9) &&
+                           there.z > 0 && lean.z <= lean.w * (1 + 1e-9) && lean.z >= -1e-9 * lean.w;
+        if (!(off <= row.bound) || !drawn) {
+            char text[96];
+            std::snprintf(text, sizeof text, "pane %d, eye %g m before it, off by %g, drawn %d", i, height,
+                          off, drawn ? 1 : 0);
+            fail(row, text);
+        }
+    }
+    return row;
+}
+
 /// Two mirrors, exactly parallel, as deep as the recursion goes.
 Row facingMirrors(const Options& options, SeededRandom& random) {
     Row row{"mirrors",    "mirrors facing each other exactly, depth 32",       0, 0, 0, 1e-9,
@@ -292,6 +350,7 @@ std::vector<Row> tryMirrors(const Options& options) {
     rows.push_back(lawOfReflection(options, random));
     options.tell(0.3);
     rows.push_back(degenerateEyes(options, random));
+    rows.push_back(nearPanes(options, random));
     rows.push_back(degeneratePolygons(options, random));
     options.tell(0.6);
     for (const Row& row : depthSteps(options)) rows.push_back(row);
