@@ -63,6 +63,13 @@ CarsStage setCarsStage(const Scene& scene, SceneRenderer& renderer, std::uint32_
     return best;
 }
 
+std::vector<View> viewsDownStreets(const city::CityModel& city, glm::ivec2 resolution) {
+    std::vector<View> views;
+    for (const Lookout& place : lookouts(city))
+        views.push_back(lookAt(place.eye, place.target, glm::radians(fieldOfView), resolution));
+    return views;
+}
+
 std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, std::span<const View> views) {
     std::map<std::uint32_t, float> sizes;
     for (const View& view : views)

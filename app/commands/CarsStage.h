@@ -25,6 +25,9 @@ struct CarsStage {
 CarsStage setCarsStage(const Scene& scene, SceneRenderer& renderer, std::uint32_t cars, std::uint64_t seed,
                        glm::ivec2 resolution);
 
+/// Views down the city's streets, from a bus driver's height above each lane of some length.
+std::vector<View> viewsDownStreets(const city::CityModel& city, glm::ivec2 resolution);
+
 /// The vehicles that a prepared renderer shows in these views, each once, with the greatest of its sizes.
 std::vector<SeenVehicle> seenIn(const SceneRenderer& renderer, std::span<const View> views);
 

@@ -37,12 +37,13 @@ void printRows(const std::vector<CompareRow>& rows) {
 }
 
 void printWindows(const std::vector<WindowRow>& rows) {
-    std::vector<std::vector<std::string>> table{
-        {"windows", "fronts", "panes", "passes", "levels", "frame ms", "/ painted", "FLIP", "PSNR dB"}};
+    std::vector<std::vector<std::string>> table{{"windows", "in view", "mirror", "panes", "passes", "levels",
+                                                 "frame ms", "/ painted", "FLIP", "PSNR dB"}};
     for (const WindowRow& row : rows)
-        table.push_back({row.name, std::to_string(row.fronts), std::to_string(row.panes),
-                         std::to_string(row.passes), std::to_string(row.levels), fixed(row.frame.median, 1),
-                         fixed(row.ratioToPainted, 2), fixed(row.flip, 4), fixed(row.psnr, 1)});
+        table.push_back({row.name, std::to_string(row.inView), std::to_string(row.fronts),
+                         std::to_string(row.panes), std::to_string(row.passes), std::to_string(row.levels),
+                         fixed(row.frame.median, 1), fixed(row.ratioToPainted, 2), fixed(row.flip, 4),
+                         fixed(row.psnr, 1)});
     std::cout << formatTable(table) << "\n";
 }
 

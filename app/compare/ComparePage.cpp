@@ -163,19 +163,25 @@ std::string windowsSection(const WindowComparison& windows) {
         "painted windows, against the reflections drawn.</figcaption></figure>\n"
         "<figure><div class=\"canvas\"><canvas id=\"windows-error\"></canvas></div><figcaption>Error of the "
         "glass against that "
-        "time.</figcaption></figure>\n</div>\n";
+        "time.</figcaption></figure>\n"
+        "<figure><div class=\"canvas\"><canvas id=\"windows-count\"></canvas></div><figcaption>The same time "
+        "where "
+        "most fronts of the city are in view, against how many of them "
+        "mirror.</figcaption></figure>\n</div>\n";
     for (const PictureStrip& strip : windows.strips) html += stripSection(strip);
     html +=
         "<div class=\"scroll\"><table><thead><tr><th class=\"text\">windows</th><th>mirrors in a "
         "row</th><th>maps at "
-        "most</th><th>fronts</th><th>panes</th><th>passes</th><th>levels</th><th>Mtexels</th><th>MiB of "
+        "most</th><th>in "
+        "view</th><th>mirror</th><th>panes</th><th>passes</th><th>levels</th><th>Mtexels</th><th>MiB of "
         "maps</th><th>frame ms</th><th>of painted</th><th>PSNR dB</th><th>FLIP</th></tr></thead><tbody>\n";
     for (const WindowRow& row : windows.rows) {
         html += "<tr data-windows=\"" + escaped(row.name) + "\"><td class=\"text\">" + escaped(row.name) +
                 "</td>";
         for (const std::uint64_t count :
-             {static_cast<std::uint64_t>(row.depth), std::uint64_t{row.mostMaps}, std::uint64_t{row.fronts},
-              std::uint64_t{row.panes}, std::uint64_t{row.passes}, std::uint64_t{row.levels}})
+             {static_cast<std::uint64_t>(row.depth), std::uint64_t{row.mostMaps}, std::uint64_t{row.inView},
+              std::uint64_t{row.fronts}, std::uint64_t{row.panes}, std::uint64_t{row.passes},
+              std::uint64_t{row.levels}})
             html += "<td>" + std::to_string(count) + "</td>";
         html += cell(static_cast<double>(row.texels) / 1e6, 2) +
                 cell(static_cast<double>(row.textureBytes) / 1048576, 1) + cell(row.frame.median, 1) +

@@ -17,6 +17,8 @@ nlohmann::ordered_json toJson(const WindowRow& row, const std::string& city) {
             {"depth", row.depth},
             {"most_maps", row.mostMaps},
             {"cut_off", row.cutOff},
+            {"place", row.place},
+            {"fronts_in_view", row.inView},
             {"fronts", row.fronts},
             {"windows", row.panes},
             {"passes", row.passes},

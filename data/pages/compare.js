@@ -144,15 +144,20 @@ charts.push(new Chart(document.getElementById('by-views'), {
 // Windows: a line for each number of mirrors in a row.
 const windowRows = JSON.parse(document.getElementById('window-data').textContent);
 if (windowRows.length) {
-  const depths = [...new Set(windowRows.map(r => r.depth))].sort(byNumber), shades = ['#8a939b', '#0b6e5f', '#3f7fc1', '#7a5ba8', '#c8452d'];
+  const usual = windowRows.filter(r => r.place === 'street' && !r.wet);
+  const depths = [...new Set(usual.map(r => r.depth))].sort(byNumber), shades = ['#8a939b', '#0b6e5f', '#3f7fc1', '#7a5ba8', '#c8452d'];
   const lines = (x, y) => depths.map((depth, i) => ({ label: depth === 0 ? 'no mirror' : depth === 1 ? 'one mirror' : depth + ' mirrors in a row',
-    data: windowRows.filter(r => r.depth === depth && r[y] !== null).map(row => ({ x: row[x], y: row[y], row })).sort((a, b) => a.x - b.x),
+    data: usual.filter(r => r.depth === depth && r[y] !== null).map(row => ({ x: row[x], y: row[y], row })).sort((a, b) => a.x - b.x),
     borderColor: shades[i % shades.length], backgroundColor: shades[i % shades.length], showLine: depth > 0, pointRadius: 5, borderWidth: 2 }));
+  const line = (label, keep, x, y, colour) => ({ label, data: windowRows.filter(r => keep(r) && r[y] !== null).map(row => ({ x: row[x], y: row[y], row })).sort((a, b) => a.x - b.x),
+    borderColor: colour, backgroundColor: colour, showLine: true, pointRadius: 5, borderWidth: 2 });
   const about = { callbacks: { label: item => { const r = item.raw.row; return r.method + ': ' + r.passes + ' passes, ' + digits(r.ratio_to_painted, 2) +
     ' of painted, ' + digits(r.psnr_db, 1) + ' dB, FLIP ' + digits(r.mean_flip, 4); } } };
+  const wetLine = (x, y) => line('wet street', r => r.wet, x, y, '#2b4a6f');
   for (const [id, x, y, across, up] of [['windows-cost', 'passes', 'ratio_to_painted', 'reflections drawn a frame', 'time, of painted windows'],
-    ['windows-error', 'ratio_to_painted', 'mean_flip', 'time, of painted windows', 'mean FLIP on glass']])
-    charts.push(new Chart(document.getElementById(id), { type: 'scatter', data: { datasets: lines(x, y) }, options: {
+    ['windows-error', 'ratio_to_painted', 'mean_flip', 'time, of painted windows', 'mean FLIP on glass'],
+    ['windows-count', 'fronts', 'ratio_to_painted', 'fronts that mirror', 'time, of painted windows']])
+    charts.push(new Chart(document.getElementById(id), { type: 'scatter', data: { datasets: id === 'windows-count' ? [line('where most fronts are in view', r => r.place === 'fronts', x, y, '#0b6e5f')] : [...lines(x, y), wetLine(x, y)] }, options: {
       scales: { x: { title: { display: true, text: across }, grid: { color: '#eceff1' } }, y: { title: { display: true, text: up }, grid: { color: '#eceff1' } } },
       plugins: { legend: { position: 'bottom', labels: { usePointStyle: true, boxWidth: 9, padding: 14 } }, tooltip: about } } }));
 }
