@@ -52,8 +52,8 @@ int benchEmpty(const Options& options) {
         std::size_t vehicleCount = 0;
         for (std::uint32_t i = 0; i < framesBefore + framesMeasured && !interrupted(); ++i) {
             if (!what.stands) set.traffic->step();
-            FrameScene frame =
-                assembleFrame(stage.scene.city, *set.traffic, stage.scene.lighting, {set.view});
+            FrameScene frame = assembleFrame(stage.scene.city, *set.traffic, stage.scene.lighting, {set.view},
+                                             stage.scene.staged);
             if (what.nobody) frame.vehicles.clear();
             if (what.stands)
                 for (vehicles::VehiclePose& pose : frame.vehicles) pose.speed = 0;

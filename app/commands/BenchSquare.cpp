@@ -147,7 +147,7 @@ void measureCost(const Options& options, PreparedScene& stage, const View& view,
         std::uint64_t maps[2] = {0, 0}, ofReflectors = 0, seenReflectors = 0;
         for (std::uint32_t i = 0; i < framesBefore + framesMeasured && !interrupted(); ++i) {
             if (!what.stand) traffic.step();
-            FrameScene with = assembleFrame(scene.city, traffic, scene.lighting, {seenFrom});
+            FrameScene with = assembleFrame(scene.city, traffic, scene.lighting, {seenFrom}, scene.staged);
             if (what.stand)
                 for (vehicles::VehiclePose& pose : with.vehicles) pose.speed = 0;
             FrameScene without = with;
@@ -216,7 +216,8 @@ int benchSquare(const Options& options) {
     vehicles::Traffic traffic = busyTraffic(stage.scene, options.seed, options.cars.front(), lookedAhead);
     {
         Errors errors(options, stage);
-        const FrameScene frame = assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {});
+        const FrameScene frame =
+            assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {}, stage.scene.staged);
         for (const SquareShot& shot : shots) {
             if (interrupted()) break;
             errors.measure(shot, frame, results, table);

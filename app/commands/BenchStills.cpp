@@ -133,7 +133,7 @@ int benchStills(const Options& options) {
         {"mem", ReflectionMethod::mem},
         {"rerender", ReflectionMethod::rerender}};
     for (const int distance : {3, 10, 40}) {
-        FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {});
+        FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {}, scene.staged);
         if (frame.vehicles.empty()) {
             spdlog::error("the city has no vehicles to look at; ask for some with --cars");
             return exitFailed;

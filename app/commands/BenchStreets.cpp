@@ -61,7 +61,8 @@ int benchStreets(const Options& options) {
     if (!stage.reflections.complete) return reportBench(options, results, table);
     const CarsStage set = setCarsStage(scene, stage.renderer, carsOnStreet, options.seed, options.resolution);
     if (!set.traffic) throw std::runtime_error("the city has no street to look down.");
-    const FrameScene street = assembleFrame(scene.city, *set.traffic, scene.lighting, {set.view});
+    const FrameScene street =
+        assembleFrame(scene.city, *set.traffic, scene.lighting, {set.view}, scene.staged);
     reflection::TriangleTracer triangles;
     addCity(triangles, scene.city);
     triangles.commit();

@@ -53,7 +53,8 @@ std::vector<Clip> recordClips(const Scene& scene, const Lighting& lighting,
             camera.update(frameStep, traffic.poses(), {});
             clip.push_back(assembleFrame(
                 scene.city, traffic, lighting,
-                {lookAt(camera.pose().eye, camera.pose().target, glm::radians(60.0), options.resolution)}));
+                {lookAt(camera.pose().eye, camera.pose().target, glm::radians(60.0), options.resolution)},
+                scene.staged));
         }
     }
     return clips;

@@ -88,7 +88,8 @@ std::vector<CarsRow> runCarsBench(const Scene& scene, const PreparedReflections&
         for (std::uint32_t frame = 0; frame < options.warmUp + options.frames && !interrupted(); ++frame) {
             for (double ahead = 0; ahead < options.frameStep; ahead += vehicles::TrafficOptions{}.step)
                 stage.traffic->step();
-            FrameScene picture = assembleFrame(scene.city, *stage.traffic, scene.lighting, {stage.view});
+            FrameScene picture =
+                assembleFrame(scene.city, *stage.traffic, scene.lighting, {stage.view}, scene.staged);
             cast.select(picture, stage.view, renderer);
             const bool measured = frame >= options.warmUp;
 

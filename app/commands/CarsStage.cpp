@@ -48,7 +48,7 @@ CarsStage setCarsStage(const Scene& scene, SceneRenderer& renderer, std::uint32_
             traffic.focus = vehicles::Focus{glm::vec3(places[p].eye + 60.0 * ahead), 400};
             vehicles::Traffic simulation(scene.city.roads, scene.kinds, traffic);
             for (int step = 0; step < 120; ++step) simulation.step();
-            renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}));
+            renderer.prepare(assembleFrame(scene.city, simulation, scene.lighting, {view}, scene.staged));
             std::size_t visible = 0;
             for (const auto& v : renderer.visibleVehicles(view)) visible += v.index < simulation.size();
             const bool full = simulation.size() < wanted;

@@ -237,7 +237,7 @@ std::vector<glm::vec3> Run::radianceOf(ReflectionSource& source) {
 void Run::advance() {
     for (double ahead = 0; ahead < options_.frameStep; ahead += vehicles::TrafficOptions{}.step)
         stage_.traffic->step();
-    picture_ = assembleFrame(scene_.city, *stage_.traffic, scene_.lighting, kind_.views);
+    picture_ = assembleFrame(scene_.city, *stage_.traffic, scene_.lighting, kind_.views, scene_.staged);
     cast_.select(picture_, stage_.view, renderer_);
 }
 

@@ -185,7 +185,7 @@ void Drive::advance(double seconds) {
 }
 
 FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
-    frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view});
+    frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view}, scene_->staged);
     if (choosing_) chooseOnce(view, framebuffer);
     return drawFrame(view, framebuffer);
 }

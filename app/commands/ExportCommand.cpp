@@ -36,7 +36,7 @@ std::vector<DriveFrame> drive(const Scene& scene, const Options& options) {
     const double start = traffic.time();
     for (std::uint32_t frame = 0; frame < count && !interrupted(); ++frame) {
         const double time = static_cast<double>(frame) / options.fps;
-        while (traffic.size() > 0 && traffic.time() < start + time) traffic.step();
+        while (traffic.time() < start + time) traffic.step();
         shots.direct(time, traffic.poses(), camera);
         camera.update(frame == 0 ? 0 : 1.0 / options.fps, traffic.poses(), {});
         frames.push_back({camera.pose(), {traffic.poses().begin(), traffic.poses().end()}});

@@ -88,7 +88,7 @@ GovernorPlay::GovernorPlay(const Scene& scene, const PreparedReflections& prepar
 
 void GovernorPlay::next(Cast& cast) {
     for (double ahead = 0; ahead < frameStep; ahead += vehicles::TrafficOptions{}.step) set_.traffic->step();
-    frame_ = assembleFrame(scene_.city, *set_.traffic, scene_.lighting, {set_.view});
+    frame_ = assembleFrame(scene_.city, *set_.traffic, scene_.lighting, {set_.view}, scene_.staged);
     cast.select(frame_, set_.view, renderer_);
 }
 

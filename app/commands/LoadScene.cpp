@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "app/commands/LoadStaging.h"
 #include "app/frame/StandingReflectors.h"
 #include "app/report/Timing.h"
 #include "city/generate/Boulevard.h"
@@ -20,7 +21,6 @@ namespace app {
 namespace {
 
 constexpr double tramSpacing = 400;  // metres of tram lane a tram
-constexpr double settlingTime = 15;  // seconds of driving before anybody looks
 
 city::CityModel makeCity(const Options& options) {
     if (options.city == "paper") {
@@ -73,6 +73,7 @@ Scene loadScene(const Options& options) {
         scene.models = std::move(models);
         scene.kinds = vehicles::kindsOf(scene.models);
     }
+    if (options.staged) loadStaging(*options.staged, scene);
     for (vehicles::VehicleModel& model : standingModels(scene.city)) scene.models.push_back(std::move(model));
     const double latitude = scene.city.frame ? scene.city.frame->latitude() : 50;
     scene.lighting = lightingAt(options.hour, latitude);
@@ -92,7 +93,7 @@ vehicles::Traffic startTraffic(const Scene& scene, std::uint64_t seed, std::uint
         haveTram && cars > 0 ? static_cast<std::uint32_t>(std::ceil(tramMetres / tramSpacing)) : 0;
     vehicles::Traffic traffic(scene.city.roads, scene.kinds, options);
     if (traffic.size() < cars) spdlog::warn("only {} of {} cars fit on the lanes", traffic.size(), cars);
-    while (traffic.size() > 0 && traffic.time() < settlingTime) traffic.step();
+    while (traffic.time() < settlingTime) traffic.step();
     return traffic;
 }
 

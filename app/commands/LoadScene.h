@@ -4,6 +4,7 @@
 
 #include "app/commands/Options.h"
 #include "app/frame/Lighting.h"
+#include "app/frame/StagedVehicles.h"
 #include "city/model/CityModel.h"
 #include "city/model/GlassFronts.h"
 #include "vehicles/models/VehicleModel.h"
@@ -18,6 +19,7 @@ struct Scene {
     /// The traffic's, then one for each of the city's standing reflectors.
     std::vector<vehicles::VehicleModel> models;
     std::vector<vehicles::VehicleKind> kinds;  ///< of the traffic: kinds[i] speaks of models[i]
+    std::vector<StagedVehicle> staged;         ///< beside the traffic, see --staged
     Lighting lighting;
 };
 
@@ -28,6 +30,9 @@ city::CityModel loadCityOf(const Options& options, bool tellNotes = true);
 
 /// The whole scene. `--car` takes the place of every model but the trams.
 Scene loadScene(const Options& options);
+
+/// Seconds of driving before anybody looks: drives begin at this time.
+inline constexpr double settlingTime = 15;
 
 /// Traffic in a scene, which must outlive it: `cars` cars and as many trams as the tram lanes are long (one
 /// every 400 m), after a quarter of a minute's driving, so that nobody stands where he was put. Says on

@@ -86,6 +86,13 @@ void addTraffic(CLI::App& parser, Options& o, unsigned groups) {
             ->check(wholeBetween(0, 100000))
             ->expected(1);
     addBody(parser, o, groups);
+    parser
+        .add_option(
+            "--staged", o.staged,
+            "vehicles that stand or drive where this file puts them, beside the traffic, and views of "
+            "them in place of the tour")
+        ->type_name("FILE.json")
+        ->check(isPath() & CLI::ExistingFile);
 }
 
 /// "16ms", "16 ms" or "16".

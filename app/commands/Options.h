@@ -26,8 +26,9 @@ struct Options {
     std::optional<double> size;  ///< metres, side of a generated city or clip square of a file
     /// One number; several where a measurement allows it, and then none unless the command line names some.
     std::vector<std::uint32_t> cars{60};
-    std::optional<std::filesystem::path> car;  ///< GLB that replaces the built-in cars
-    double carLength = 4.5;                    ///< metres
+    std::optional<std::filesystem::path> car;     ///< GLB that replaces the built-in cars
+    double carLength = 4.5;                       ///< metres
+    std::optional<std::filesystem::path> staged;  ///< vehicles beside the traffic
     ReflectionMethod method = ReflectionMethod::mem;
     MemVariant mem = MemVariant::ours;
     Quality quality = Quality::medium;
@@ -71,7 +72,7 @@ struct Options {
 enum OptionGroup : unsigned {
     cityOptions = 1u << 0,     ///< CITY, also spelt --city, --seed --size
     cityIsOptional = 1u << 1,  ///< no CITY means none, not the default
-    trafficOptions = 1u << 2,  ///< --cars --car --car-length
+    trafficOptions = 1u << 2,  ///< --cars --car --car-length --staged
     severalCars = 1u << 3,     ///< --cars takes several numbers
     methodOption = 1u << 4,    ///< --method
     memOption = 1u << 5,       ///< --mem

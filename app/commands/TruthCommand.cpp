@@ -89,7 +89,7 @@ class Shots {
 
     void advance() {
         const double step = 1.0 / options_->fps;
-        if (frame_ > 0 && traffic_.size() > 0) {
+        if (frame_ > 0) {
             lead_ += step;
             for (double before = traffic_.time(); lead_ > 0; before = traffic_.time()) {
                 traffic_.step();
@@ -297,8 +297,9 @@ int run(const Options& options) {
         if (frame != (2 * std::uint64_t{taken} + 1) * frames / (2 * std::uint64_t{stills})) continue;
         ++taken;
         const std::string number = (taken < 10 ? "0" : "") + std::to_string(taken);
-        if (!still.take(assembleFrame(scene.city, shots.traffic(), scene.lighting, {shots.view()}), number,
-                        results, table)) {
+        if (!still.take(
+                assembleFrame(scene.city, shots.traffic(), scene.lighting, {shots.view()}, scene.staged),
+                number, results, table)) {
             spdlog::warn("interrupted: the rows that are finished are kept; ask for the same again to go on");
             break;
         }

@@ -35,7 +35,7 @@ WindowsStage::WindowsStage(const Scene& scene, const PreparedReflections& prepar
 }
 
 FrameScene WindowsStage::frameOf(const CarsStage& set) const {
-    return assembleFrame(scene_.city, *set.traffic, scene_.lighting, {set.view});
+    return assembleFrame(scene_.city, *set.traffic, scene_.lighting, {set.view}, scene_.staged);
 }
 
 Image8 WindowsStage::picture(WindowsRun& run, const FrameScene& frame, int times) {

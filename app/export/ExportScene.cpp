@@ -54,6 +54,10 @@ GltfMaterial surfaceMaterial(vehicles::Surface surface) {
             return {.name = "trim", .baseColour = glm::vec3(0.03f), .roughness = 0.7f};
         case Surface::polishedStone:
             return {.name = "polishedStone", .baseColour = glm::vec3(0.014f), .roughness = 0.04f};
+        case Surface::cloth:
+            return {.name = "cloth", .baseColour = glm::vec3(1), .roughness = 1};
+        case Surface::skin:
+            return {.name = "skin", .baseColour = {0.45f, 0.25f, 0.17f}, .roughness = 0.6f};
         case Surface::interior:
         case Surface::count:
             break;

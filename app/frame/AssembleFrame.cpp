@@ -7,11 +7,14 @@
 namespace app {
 
 FrameScene assembleFrame(const city::CityModel& city, const vehicles::Traffic& traffic,
-                         const Lighting& lighting, std::vector<View> views) {
+                         const Lighting& lighting, std::vector<View> views,
+                         std::span<const StagedVehicle> staged) {
     FrameScene scene;
     scene.time = traffic.time();
     scene.views = std::move(views);
     scene.vehicles.assign(traffic.poses().begin(), traffic.poses().end());
+    const std::vector<vehicles::VehiclePose> put = stagedPoses(staged, scene.time);
+    scene.vehicles.insert(scene.vehicles.end(), put.begin(), put.end());
     const std::vector<vehicles::VehiclePose> standing =
         standingPoses(city, static_cast<std::uint32_t>(traffic.kindCount()));
     scene.vehicles.insert(scene.vehicles.end(), standing.begin(), standing.end());

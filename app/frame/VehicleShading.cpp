@@ -30,6 +30,8 @@ constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::
     {{0.016f, 0.016f, 0.017f}, 0.02f},
     {{0.04f, 0.038f, 0.036f}, 0.0f},
     {{0.014f, 0.014f, 0.015f}, 0.048f},
+    {{1.0f, 1.0f, 1.0f}, 0.0f},
+    {{0.45f, 0.25f, 0.17f}, 0.0f},
 }};
 
 }  // namespace
@@ -37,7 +39,8 @@ constexpr std::array<SurfaceOptics, static_cast<std::size_t>(vehicles::Surface::
 CoatedVertex coatedVertex(const Lighting& lighting, vehicles::Surface surface,
                           const vehicles::VehiclePose& pose, const glm::vec3& normal, float sun) {
     const SurfaceOptics& optics = surfaces[std::min(static_cast<std::size_t>(surface), surfaces.size() - 1)];
-    const glm::vec3 albedo = surface == vehicles::Surface::paint ? pose.paint : optics.albedo;
+    const bool coloured = surface == vehicles::Surface::paint || surface == vehicles::Surface::cloth;
+    const glm::vec3 albedo = coloured ? pose.paint : optics.albedo;
     const glm::vec3 ambient =
         glm::mix(lighting.groundIrradiance, lighting.skyIrradiance, 0.5f + 0.5f * normal.z) * 0.85f;
     const glm::vec3 light =

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -10,79 +8,13 @@
 #include "app/mirrors/Lathe.h"
 #include "app/mirrors/LitShapes.h"
 #include "app/mirrors/MirrorWorld.h"
+#include "app/report/JsonPlace.h"
 
 namespace app {
 
 namespace {
 
-using nlohmann::json;
-
-/// One value of the file and the way to it.
-class Place {
-  public:
-    Place(const json& value, std::string file, std::string path)
-        : value_(value), file_(std::move(file)), path_(std::move(path)) {}
-
-    [[noreturn]] void refuse(const std::string& what, const std::string& remedy) const {
-        throw std::runtime_error(file_ + (path_.empty() ? "" : ", " + path_) + ": " + what + "; " + remedy +
-                                 ".");
-    }
-    Place at(const std::string& key) const {
-        object();
-        if (!value_.contains(key)) refuse("'" + key + "' is missing", "add it, see data/scenes/README.md");
-        return {value_.at(key), file_, path_.empty() ? key : path_ + "." + key};
-    }
-    bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
-    /// Refuses every name but these: a misspelt one would otherwise be silently without effect.
-    void only(const std::set<std::string>& names) const {
-        object();
-        for (const auto& [key, v] : value_.items()) {
-            if (names.contains(key)) continue;
-            std::string list;
-            for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-            refuse("there is no '" + key + "' here", "use only " + list);
-        }
-    }
-    std::vector<Place> items() const {
-        if (!value_.is_array()) refuse("is not a list", "write [ ... ]");
-        std::vector<Place> all;
-        for (std::size_t i = 0; i < value_.size(); ++i)
-            all.emplace_back(value_[i], file_, path_ + "[" + std::to_string(i) + "]");
-        return all;
-    }
-    double number(double low, double high) const {
-        if (!value_.is_number()) refuse("is not a number", "write a plain finite number");
-        const double v = value_.get<double>();
-        if (!(v >= low && v <= high)) {
-            std::ostringstream range;
-            range << v << " lies outside " << low << " .. " << high;
-            refuse(range.str(), "choose a value within it");
-        }
-        return v;
-    }
-    int whole(int low, int high) const {
-        if (!value_.is_number_integer()) refuse("is not a whole number", "write one, without a point");
-        return static_cast<int>(number(low, high));
-    }
-    std::string text() const {
-        if (!value_.is_string()) refuse("is not a text", "put it in quotes");
-        return value_.get<std::string>();
-    }
-    glm::dvec3 vector(double low = -1e6, double high = 1e6) const {
-        const std::vector<Place> three = items();
-        if (three.size() != 3)
-            refuse("has " + std::to_string(three.size()) + " numbers", "write three, [x, y, z]");
-        return {three[0].number(low, high), three[1].number(low, high), three[2].number(low, high)};
-    }
-    glm::vec3 share() const { return glm::vec3(vector(0, 1)); }
-
-  private:
-    void object() const {
-        if (!value_.is_object()) refuse("is not an object", "write { ... }");
-    }
-    const json& value_;
-    std::string file_, path_;
-};
+using Place = JsonPlace;
 
 reflection::MirrorSurface surfaceOf(const Place& p) {
     reflection::MirrorSurface surface;
@@ -252,13 +184,8 @@ void readObject(const Place& p, MirrorWorld& world) {
 }  // namespace
 
 MirrorWorld parseMirrorWorld(const std::string& text, const std::string& name) {
-    json document;
-    try {
-        document = json::parse(text);
-    } catch (const json::exception& e) {
-        throw std::runtime_error(name + ": is not JSON (" + e.what() + "); correct it there.");
-    }
-    const Place top(document, name, "");
+    const nlohmann::json document = parseJson(text, name);
+    const Place top(document, name, "data/scenes/README.md");
     top.only({"name", "source", "licence", "depth", "camera", "objects", "triangles", "beyond", "sky"});
     MirrorWorld world;
     world.name = top.at("name").text();

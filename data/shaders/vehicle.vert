@@ -6,7 +6,7 @@
 #include "shadow.glsl"
 
 // vehicles::Surface: albedo, reflectance at normal incidence (F0).
-const vec4 surfaces[10] = vec4[10](vec4(1.0, 1.0, 1.0, 0.04),     // paint: times the instance's colour
+const vec4 surfaces[12] = vec4[12](vec4(1.0, 1.0, 1.0, 0.04),     // paint: times the instance's colour
                                  vec4(0.012, 0.015, 0.016, 0.06),  // glass
                                  vec4(0.05, 0.05, 0.05, 0.72),     // chrome
                                  vec4(0.018, 0.018, 0.019, 0.012), // tyre
@@ -15,7 +15,9 @@ const vec4 surfaces[10] = vec4[10](vec4(1.0, 1.0, 1.0, 0.04),     // paint: time
                                  vec4(0.30, 0.012, 0.010, 0.06),   // tail lamp
                                  vec4(0.016, 0.016, 0.017, 0.02),  // trim
                                  vec4(0.04, 0.038, 0.036, 0.0),    // interior
-                                 vec4(0.014, 0.014, 0.015, 0.048)); // polished stone
+                                 vec4(0.014, 0.014, 0.015, 0.048), // polished stone
+                                 vec4(1.0, 1.0, 1.0, 0.0),         // cloth: times the instance's colour
+                                 vec4(0.45, 0.25, 0.17, 0.0));     // skin
 
 layout(binding = 1) uniform sampler2DShadow sunShadow;
 
@@ -46,7 +48,7 @@ void main() {
     gl_Layer = int(frame.eyeLow.w);
 #endif
     vec4 s = surfaces[surface];
-    vec3 albedo = surface == 0u ? paint.rgb : s.rgb;
+    vec3 albedo = surface == 0u || surface == 10u ? paint.rgb : s.rgb;
     // The sun's shadow is looked up per vertex: vertices are dense, and cars move from light to shade in a moment.
     vec3 world = relative + frame.eyeHigh.xyz + frame.eyeLow.xyz;
     float sun = texture(sunShadow, shadowCoordinate(world, n));

@@ -29,10 +29,10 @@ void addPanel(Shell& half, const Field& region, Surface surface, float edge, Sur
     half.assign(region, surface);
 }
 
-void addDoorMirror(city::Mesh& parts, const glm::vec3& at, float size) {
+void addDoorMirror(city::Mesh& parts, const glm::vec3& at, float size, Surface cap) {
     const glm::vec3 half = size * glm::vec3(0.065f, 0.105f, 0.072f);
     const glm::vec3 centre = at + glm::vec3(0, 0.06f + half.y, 0.02f);
-    addRounded(parts, centre, half, 3.0f, 18, Surface::paint);
+    addRounded(parts, centre, half, 3.0f, 18, cap);
     addRounded(parts, centre - glm::vec3(0.62f * half.x, 0, 0),
                glm::vec3(0.42f * half.x, 0.87f * half.y, 0.84f * half.z), 4.0f, 14, Surface::chrome);
     addRounded(parts, at + glm::vec3(0, 0.05f, -0.02f), size * glm::vec3(0.035f, 0.085f, 0.022f), 3.0f, 10,

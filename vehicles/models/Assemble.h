@@ -16,8 +16,8 @@ void addGap(Shell& half, const Field& field);
 void addPanel(Shell& half, const Field& region, Surface surface, float edge = 0,
               Surface edgeSurface = Surface::trim);
 
-/// A door mirror on the left: its cap in paint, its glass in chrome to the rear, on a foot of trim.
-void addDoorMirror(city::Mesh& parts, const glm::vec3& at, float size = 1);
+/// A door mirror on the left: its cap, its glass in chrome to the rear, on a foot of trim.
+void addDoorMirror(city::Mesh& parts, const glm::vec3& at, float size = 1, Surface cap = Surface::paint);
 
 /// A door handle on the left, along x.
 void addHandle(city::Mesh& parts, const glm::vec3& at, Surface surface = Surface::chrome);

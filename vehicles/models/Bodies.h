@@ -11,5 +11,7 @@ VehicleModel saloon();
 VehicleModel van();
 VehicleModel bus();
 VehicleModel tram();
+/// A bicycle with its rider, who does not pedal. No part of the traffic: see app/frame/StagedVehicles.
+VehicleModel cyclist();
 
 }  // namespace vehicles

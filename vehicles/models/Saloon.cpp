@@ -1,5 +1,6 @@
 #include "vehicles/models/Assemble.h"
 #include "vehicles/models/Bodies.h"
+#include "vehicles/models/Bumper.h"
 #include "vehicles/models/Cage.h"
 #include "vehicles/models/Outline.h"
 #include "vehicles/models/Parts.h"
@@ -199,7 +200,7 @@ void drawLines(Shell& half) {
         half,
         inRearView(Outline({{-.3f, 1.055f}, {.595f, 1.045f}, {.525f, 1.325f}, {-.3f, 1.350f}}, .07f), -.98f));
 
-    // Front: lamps, grille, intake, plate.
+    // Front: lamps, grille, intake.
     addPanel(half,
              roundTheFront(Outline({{{.48f, .620f}, .03f},
                                     {{.88f, .640f}, .05f},
@@ -220,9 +221,6 @@ void drawLines(Shell& half) {
     addPanel(half,
              inFrontView(Outline({{-.2f, .270f}, {.56f, .270f}, {.62f, .380f}, {-.2f, .375f}}, .04f), 1.9f),
              Surface::trim);
-    addPanel(half,
-             inFrontView(Outline({{-.2f, .395f}, {.26f, .395f}, {.26f, .500f}, {-.2f, .500f}}, .01f), 1.9f),
-             Surface::rim, .006f);
 
     // Rear: lamps, plate, bumper insert.
     addPanel(half,
@@ -247,7 +245,7 @@ VehicleModel saloon() {
                   .width = 1.83f,
                   .height = 1.45f,
                   .track = 1.59f,
-                  .wheel = {.radius = .325f, .width = .225f, .rimRadius = .228f, .spokes = 7},
+                  .wheel = {.radius = .325f, .width = .225f, .rimRadius = .228f, .cover = true},
                   .axles = {front, rear}};
     Shell half = subdivide(
         cage(), {.rear = -2.48f, .front = 2.27f, .width = plan.width, .floor = .17f, .top = plan.height}, 2);
@@ -255,9 +253,16 @@ VehicleModel saloon() {
     drawLines(half);
     for (const float x : {front, rear})
         cutWheelArch(half, parts, {.x = x, .z = plan.wheel.radius + .01f, .radius = .372f, .inner = .54f});
-    addDoorMirror(parts, {.55f, sideAt(half, .55f, .93f), .97f});
+    addDoorMirror(parts, {.55f, sideAt(half, .55f, .93f), .97f}, 1, Surface::chrome);
+    addBumper(parts, half, {.z = .447f, .centre = 1.30f, .halfAngle = .98f});
+    addBumper(parts, half,
+              {.z = .500f, .halfHeight = .045f, .centre = -1.40f, .halfAngle = .98f, .rear = true});
     for (const float x : {-.35f, -1.20f}) addHandle(parts, {x, sideAt(half, x, .785f), .785f});
-    return assemble(plan, std::move(half), parts, {});
+    // The front plate stands before the bumper.
+    city::Mesh plate;
+    const float before = 1.30f + outlineAt(half, .447f, 1.30f, 1e-3f) + .064f;
+    addBox(plate, {before - .012f, -.26f, .392f}, {before, .26f, .502f}, Surface::rim);
+    return assemble(plan, std::move(half), parts, plate);
 }
 
 }  // namespace vehicles

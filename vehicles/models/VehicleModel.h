@@ -20,6 +20,8 @@ enum class Surface : std::uint32_t {
     trim,  ///< black plastic, grilles, underbody
     interior,
     polishedStone,  ///< black granite: of no vehicle, but of what stands in a city and mirrors as they do
+    cloth,          ///< the instance's colour, matt
+    skin,
     count
 };
 

@@ -26,6 +26,22 @@ void addSpoke(city::Mesh& mesh, float angle, float inner, float outer, float hal
     addPlate(mesh, ir - depth * axle, ir, orr, orr - depth * axle, Surface::rim);
 }
 
+/// A pressed chrome disc: a dome in the middle, a round channel about it, a bead along the rim. Smooth, so
+/// that what it mirrors bends without breaks.
+void addCover(city::Mesh& mesh, float rim, float lip, int segments) {
+    constexpr int rings = 18;
+    std::vector<glm::vec2> profile;
+    for (int i = 0; i <= rings; ++i) {
+        const float t = static_cast<float>(i) / rings, r = t * (rim - 0.012f);
+        const float dome = 0.020f * std::exp(-9 * t * t);
+        const float bead = 0.008f * std::exp(-60 * (t - 0.8f) * (t - 0.8f));
+        const float edge = -0.014f * std::pow(t, 12.0f);
+        profile.push_back({lip + dome + bead + edge, r});
+    }
+    profile.push_back({lip - 0.03f, rim - 0.014f});
+    addRevolved(mesh, profile, segments, Surface::chrome);
+}
+
 }  // namespace
 
 city::Mesh wheelMesh(const WheelShape& shape) {
@@ -67,8 +83,7 @@ city::Mesh wheelMesh(const WheelShape& shape) {
                  {-0.8f * w, rim}},
                 segments, Surface::tyre);
     const float lip = 0.80f * w;
-    if (shape.spokes > 0) {
-        // Lip, then the well behind the spokes, then the brake that fills the sight through them.
+    if (shape.cover || shape.spokes > 0)
         addRevolved(mesh,
                     {{-0.5f * w, rim - 0.03f},
                      {lip - 0.02f, rim - 0.022f},
@@ -76,6 +91,10 @@ city::Mesh wheelMesh(const WheelShape& shape) {
                      {lip, rim - 0.004f},
                      {0.74f * w, rim}},
                     segments, Surface::rim);
+    if (shape.cover) {
+        addCover(mesh, rim, lip, segments);
+    } else if (shape.spokes > 0) {
+        // The well behind the spokes, then the brake that fills the sight through them.
         addRevolved(mesh, {{0.0f, 0.3f * rim}, {0.0f, 0.80f * rim}, {-0.02f, 0.80f * rim}}, segments,
                     Surface::rim);
         addRevolved(mesh, {{-0.03f, 0}, {-0.03f, rim - 0.02f}}, segments, Surface::interior);
@@ -113,7 +132,7 @@ city::Mesh plainWheelMesh(const WheelShape& shape, int segments, bool rim) {
     city::Mesh mesh;
     const float r = shape.radius, w = shape.width / 2, inner = rim ? shape.rimRadius : 0;
     const Surface outer = shape.tyre ? Surface::tyre : Surface::rim;
-    if (rim) addRevolved(mesh, {{w, 0}, {w, inner}}, segments, Surface::rim);
+    if (rim) addRevolved(mesh, {{w, 0}, {w, inner}}, segments, shape.cover ? Surface::chrome : Surface::rim);
     addRevolved(mesh, {{w, inner}, {w, r}, {-w, r}}, segments, outer);
     return mesh;
 }

@@ -10,6 +10,7 @@ struct WheelShape {
     float rimRadius = 0.21f;  ///< where the tyre meets the rim
     int spokes = 5;           ///< 0: a pressed steel disc, as on buses
     bool tyre = true;         ///< false: a steel wheel, as on trams
+    bool cover = false;       ///< a chrome cover over all of the rim, in place of spokes
 };
 
 /// A left-hand wheel as VehicleModel::wheel asks: axle along y, outside towards +y, about 1,500 triangles.
