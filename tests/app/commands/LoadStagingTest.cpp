@@ -96,7 +96,10 @@ TEST(LoadStaging, TheStreetThatComesWithItIsSound) {
     const vehicles::VehicleModel& cyclist = s.models[s.staged[2].model];
     EXPECT_EQ(cyclist.name, "cyclist");
     const std::vector<vehicles::VehicleModel> fleet = vehicles::builtInFleet();
-    const double bumper = s.staged[0].path[0].y + static_cast<double>(fleet[1].levels[0].body.bounds().max.x);
+    city::Aabb chrome;
+    for (const city::Vertex& v : fleet[1].levels[0].body.vertices)
+        if (v.material == static_cast<std::uint32_t>(vehicles::Surface::chrome)) chrome.extend(v.position);
+    const double bumper = s.staged[0].path[0].y + static_cast<double>(chrome.max.x);
     const double side = s.staged[2].path[0].y - static_cast<double>(cyclist.levels[0].body.bounds().max.y);
     EXPECT_NEAR(side - bumper, 0.3, 0.02);
 }

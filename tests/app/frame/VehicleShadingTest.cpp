@@ -34,8 +34,9 @@ std::vector<Row> shaderSurfaces() {
     const std::string text = shader("vehicle.vert");
     std::vector<Row> rows;
     const std::regex row(R"(vec4\(([0-9.]+), ([0-9.]+), ([0-9.]+), ([0-9.]+)\))");
-    const std::string table = text.substr(
-        text.find("surfaces[10]"), text.find(';', text.find("surfaces[10]")) - text.find("surfaces[10]"));
+    const std::size_t start = text.find("const vec4 surfaces[");
+    if (start == std::string::npos) return rows;
+    const std::string table = text.substr(start, text.find(';', start) - start);
     for (std::sregex_iterator it(table.begin(), table.end(), row), end; it != end; ++it)
         rows.push_back(
             {{std::stof((*it)[1]), std::stof((*it)[2]), std::stof((*it)[3])}, std::stof((*it)[4])});
@@ -52,7 +53,7 @@ glm::dvec3 shaderRadiance(const Row& s, const Lighting& l, int surface, const ve
     const double inversePi = 0.31830989, sun = 1, lamps = l.lampsLit ? 1 : 0;
     const glm::dvec3 sky(l.skyIrradiance), ground(l.groundIrradiance), sunlight(l.sunIrradiance),
         toSun(l.sunDirection);
-    const glm::dvec3 albedo = surface == 0 ? glm::dvec3(pose.paint) : glm::dvec3(s.albedo);
+    const glm::dvec3 albedo = surface == 0 || surface == 10 ? glm::dvec3(pose.paint) : glm::dvec3(s.albedo);
     const glm::dvec3 light =
         mix(ground, sky, 0.5 + 0.5 * n.z) * 0.85 + sunlight * (sun * std::max(glm::dot(n, toSun), 0.0));
     glm::dvec3 emission(0);
@@ -76,7 +77,7 @@ TEST(VehicleShadingTest, shadersStillSayWhatIsTranscribedHere) {
     // The statements that shaderRadiance above repeats; where one changes, change it and VehicleShading.cpp.
     const std::string vert = shader("vehicle.vert"), frag = shader("vehicle.frag"),
                       frame = shader("frame.glsl");
-    for (const char* line : {"vec3 albedo = surface == 0u ? paint.rgb : s.rgb;",
+    for (const char* line : {"vec3 albedo = surface == 0u || surface == 10u ? paint.rgb : s.rgb;",
                              "vec3 light = ambientIrradiance(n, 0.85) + frame.sunIrradiance.rgb * (sun * "
                              "max(dot(n, frame.sunDirection.xyz), 0.0));",
                              "if (surface == 5u) emission = vec3(6.0, 5.6, 5.0) * frame.skyIrradiance.w;",
