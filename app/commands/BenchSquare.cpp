@@ -13,6 +13,8 @@
 #include "app/commands/Version.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/ChromePlan.h"
+#include "app/frame/CloseScene.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/frame/StandingReflectors.h"
 #include "app/report/AsideFile.h"
@@ -37,6 +39,12 @@ std::string fileName(std::string shot, const std::string& method) {
     return "square_" + shot + "_" + method + ".png";
 }
 
+std::vector<std::uint32_t> indicesOf(std::span<const SeenVehicle> seen) {
+    std::vector<std::uint32_t> indices;
+    for (const SeenVehicle& v : seen) indices.push_back(v.index);
+    return indices;
+}
+
 /// Errors of every method on the pixels of one reflector (or of all), against many rays through each.
 class Errors {
   public:
@@ -44,7 +52,11 @@ class Errors {
         : options_(options),
           stage_(stage),
           target_(options.resolution),
-          rays_(stage.scene.city, stage.scene.models) {}
+          rays_(stage.scene.city, stage.scene.models),
+          close_(stage.scene.city, stage.scene.models) {
+        stage.renderer.setCloseScene(&close_);
+    }
+    ~Errors() { stage_.renderer.setCloseScene(nullptr); }
 
     void measure(const SquareShot& shot, FrameScene frame, ResultFile& results, Table& table) {
         SceneRenderer& renderer = stage_.renderer;
@@ -66,6 +78,7 @@ class Errors {
             {"blend", ReflectionMethod::blend},
             {"box", ReflectionMethod::box},
             {"mem", ReflectionMethod::mem},
+            {"chrome", ReflectionMethod::mem},
             {"rerender", ReflectionMethod::rerender},
             {"raytrace", ReflectionMethod::raytrace}};
         for (const auto& [name, method] : methods) {
@@ -78,7 +91,19 @@ class Errors {
                 method ? engineSource(stage_.scene, stage_.reflections, settings, rays_) : tracedTruth(rays_);
             renderer.prepare(frame);
             source->beginFrame(frame, seen, renderer);
-            renderer.drawView(shot.view, source->forView(shot.view, renderer), target_.framebuffer());
+            ChromePlan plan;
+            if (name == "chrome")
+                plan = planChrome(frame, indicesOf(seen), stage_.scene.models, close_.parts, {});
+            renderer.drawView(shot.view, source->forView(shot.view, renderer), target_.framebuffer(), {},
+                              {&plan, 0, {}});
+            if (name == "chrome") {
+                const ChromeCounts& c = renderer.counters().chrome;
+                spdlog::info(
+                    "{}: {} jobs, {} meshes, {} vertices, {} searched, {} triangles, {:.1f} ms ({:.1f} "
+                    "searching)",
+                    shot.name, c.jobs, c.meshes, c.vertices, c.searched, c.triangles, c.milliseconds,
+                    c.searchMilliseconds);
+            }
             const Image8 image = readPixels(target_.framebuffer(), target_.size());
             const std::string file = fileName(shot.name, name);
             writePng({image.size.x, image.size.y, image.rgba}, options_.out / file);
@@ -114,6 +139,7 @@ class Errors {
     PreparedScene& stage_;
     OffscreenTarget target_;
     RayTracer rays_;
+    CloseScene close_;
 };
 
 struct Case {
@@ -213,7 +239,8 @@ int benchSquare(const Options& options) {
         spdlog::error("nothing stands in this city that mirrors: boulevard has a sphere and a pillar");
         return exitFailed;
     }
-    vehicles::Traffic traffic = busyTraffic(stage.scene, options.seed, options.cars.front(), lookedAhead);
+    const Scene& scene = stage.scene;
+    vehicles::Traffic traffic = busyTraffic(scene, options.seed, options.cars.front(), lookedAhead);
     {
         Errors errors(options, stage);
         const FrameScene frame =
@@ -221,6 +248,12 @@ int benchSquare(const Options& options) {
         for (const SquareShot& shot : shots) {
             if (interrupted()) break;
             errors.measure(shot, frame, results, table);
+            if (!shot.reflector || !shot.name.ends_with("near")) continue;
+            SquareShot beside = shot;
+            beside.name = scene.city.reflectors[*shot.reflector].name + " beside a car";
+            FrameScene parked = frame;
+            parkBeside(parked, scene, *shot.reflector, 0.5);
+            errors.measure(beside, parked, results, table);
         }
     }
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);

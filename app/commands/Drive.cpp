@@ -11,6 +11,8 @@
 #include "app/commands/Calibration.h"
 #include "app/commands/CityMirrors.h"
 #include "app/display/OffscreenTarget.h"
+#include "app/frame/ChromePlan.h"
+#include "app/frame/CloseScene.h"
 #include "app/frame/WetRoad.h"
 #include "app/report/Timing.h"
 
@@ -33,7 +35,7 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       settings_{options.method,  options.mem,         options.quality,    options.cars.front(),
                 options.hour,    options.budgetMs,    options.error,      options.fixedQuality,
                 options.mirrors, options.mirrorDepth, options.mirrorMaps, options.mirrorFade,
-                options.weather},
+                options.chrome,  options.chromeShare, options.weather},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
       lighting_(scene.lighting) {
@@ -41,6 +43,8 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
     preparation_.cell = static_cast<float>(options.cell);
     preparation_.quiet = options.quiet;
 }
+
+Drive::~Drive() = default;
 
 bool Drive::startReflecting(const CarryOn& carryOn, const CarryOn& calibrating) {
     if (settings_.method != ReflectionMethod::none && !reflectIn(lighting_, carryOn)) return false;
@@ -52,6 +56,7 @@ void Drive::makeRenderer() {
     renderer_.reset();
     renderer_ = std::make_unique<SceneRenderer>(scene_->city, scene_->models, renderOptions());
     renderer_->setGlass(scene_->glass.fronts);
+    renderer_->setCloseScene(closeScene_.get());
 }
 
 MirrorSettings Drive::mirrorSettings(const View& view) const {
@@ -62,6 +67,17 @@ MirrorSettings Drive::mirrorSettings(const View& view) const {
     settings.fade = settings_.mirrorFade;
     if (settings_.weather == Weather::wet) settings.wetRoad = roadSeenBy(scene_->city.roads, view);
     return settings;
+}
+
+ChromePlan Drive::chromePlan(std::span<const SeenVehicle> seen) {
+    if (!settings_.chrome || settings_.method == ReflectionMethod::raytrace) return {};
+    if (!closeScene_) {
+        closeScene_ = std::make_unique<CloseScene>(scene_->city, scene_->models);
+        renderer_->setCloseScene(closeScene_.get());
+    }
+    std::vector<std::uint32_t> indices;
+    for (const SeenVehicle& vehicle : seen) indices.push_back(vehicle.index);
+    return planChrome(frame_, indices, scene_->models, closeScene_->parts, {});
 }
 
 void Drive::govern(const CarryOn& calibrating) {
@@ -227,6 +243,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
                                           });
     };
     planMirrors();
+    ChromePlan chrome;
     PlanarReflections planar;
     if (settings_.mirrors) planar.plan = &mirrorPlan_;
     planar.wet = settings_.weather == Weather::wet;
@@ -245,8 +262,13 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
         reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
         stats.reflectionMs = reflecting.elapsed();
         stats.reflections = engine_->counters();
+        chrome = chromePlan(seen);
+        stats.chromeParts = chrome.parts;
+        stats.chromeLeftOut = chrome.leftOut;
     }
-    renderer_->drawView(view, reflections_, framebuffer, planar);
+    ChromeDrawing chromeDrawing;
+    chromeDrawing.share = settings_.chromeShare;
+    renderer_->drawView(view, reflections_, framebuffer, planar, {&chrome, 0, chromeDrawing});
     stats.frameMs = timer_.end();
     stats.drawn = renderer_->counters();
     stats.mirrors = mirrorPlan_.counters;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/commands/LoadScene.h"
@@ -17,6 +18,9 @@
 #include "app/render/SceneRenderer.h"
 
 namespace app {
+
+struct ChromePlan;
+struct CloseScene;
 
 /// How a budget or an error was met in a frame.
 struct Governed {
@@ -35,6 +39,8 @@ struct FrameStats {
     ReflectionCounters reflections;
     RenderCounters drawn;
     MirrorCounters mirrors;
+    std::uint32_t chromeParts = 0;    ///< of the vehicles seen
+    std::uint32_t chromeLeftOut = 0;  ///< jobs for want of room
     Governed governed;
 };
 
@@ -45,6 +51,7 @@ class Drive {
   public:
     /// `renderer`: GL_RENDERER, for which calibrations are kept.
     Drive(const Scene& scene, const Options& options, std::string renderer);
+    ~Drive();
 
     /// Heightfield, reference maps and whatever else the method needs. False: ended by `carryOn` or an
     /// interrupt; what is finished stays in the cache.
@@ -75,6 +82,8 @@ class Drive {
     RenderOptions renderOptions() const;
     void makeRenderer();
     MirrorSettings mirrorSettings(const View& view) const;
+    /// Which chrome shows close things itself: only maps need that, rays see all.
+    ChromePlan chromePlan(std::span<const SeenVehicle> seen);
     ReflectionSettings reflectionSettings() const;
     void lendRays();
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.
@@ -98,7 +107,8 @@ class Drive {
     DriveSettings settings_;
     vehicles::Traffic traffic_;
     MirrorPlanner mirrorPlanner_;
-    MirrorPlan mirrorPlan_;  ///< of the last frame
+    MirrorPlan mirrorPlan_;                   ///< of the last frame
+    std::unique_ptr<CloseScene> closeScene_;  ///< made when first needed
     std::unique_ptr<SceneRenderer> renderer_;
     Lighting lighting_;
     std::unique_ptr<RayTracer> rays_;  ///< made when first needed

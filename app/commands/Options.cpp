@@ -154,6 +154,23 @@ void addMirrors(CLI::App& parser, Options& o) {
         ->check(CLI::IsMember({"0"}) | between(0.1, 10000, "metres"));
 }
 
+void addChrome(CLI::App& parser, Options& o) {
+    parser
+        .add_option_function<std::string>(
+            "--chrome", [&o](const std::string& text) { o.chrome = text == "auto"; },
+            "chrome that is large in the picture shows what is close to it where it truly appears: auto "
+            "(default) or off")
+        ->type_name("auto|off")
+        ->check(CLI::IsMember({"auto", "off"}));
+    parser
+        .add_option("--chrome-share", o.chromeShare,
+                    "share of close vehicles' vertices that are searched for in chrome, 0.001 to 1; the rest "
+                    "follow them on a grid")
+        ->type_name("SHARE")
+        ->capture_default_str()
+        ->check(between(0.001, 1, ""));
+}
+
 /// What the command line said and `Options` has no place for.
 struct Spellings {
     std::optional<std::string> city;        ///< CITY
@@ -293,6 +310,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->check(wholeBetween(1, 16));
     }
     if (groups & mirrorOptions) addMirrors(parser, o);
+    if (groups & chromeOptions) addChrome(parser, o);
     if (groups & exportOptions) {
         parser.add_option("--city", o.exportCity, "write the city to this file")
             ->type_name("FILE.glb")

@@ -53,6 +53,8 @@ struct Options {
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections a frame at most
     double mirrorFade = 0;         ///< metres; 0: mirrors do not fade
+    bool chrome = true;            ///< chrome shows close things itself
+    double chromeShare = 0.096;    ///< of vertices that are searched for in it
     Weather weather = Weather::dry;
     std::uint32_t samples = 64;  ///< mirror rays a pixel
     std::uint32_t bounces = 3;   ///< mirrors in a row
@@ -98,6 +100,7 @@ enum OptionGroup : unsigned {
     saveOption = 1u << 23,     ///< --save
     bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
     searchOption = 1u << 25,   ///< --search
+    chromeOptions = 1u << 26,  ///< --chrome --chrome-share
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

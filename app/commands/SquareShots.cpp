@@ -6,6 +6,8 @@
 #include <glm/trigonometric.hpp>
 #include <limits>
 
+#include "app/frame/StandingReflectors.h"
+
 namespace app {
 
 namespace {
@@ -31,6 +33,24 @@ glm::dvec3 towardsLane(const city::CityModel& city, const glm::dvec3& from) {
     return best;
 }
 
+/// World z of the ground's triangles under a place; the place's own where there are none.
+double groundBelow(const city::CityModel& city, const glm::dvec3& place) {
+    for (const city::Chunk& chunk : city.chunks) {
+        if (chunk.kind != city::ChunkKind::ground) continue;
+        for (std::size_t k = 0; k + 2 < chunk.mesh.indices.size(); k += 3) {
+            const auto corner = [&](std::size_t c) {
+                return glm::dvec3(chunk.mesh.vertices[chunk.mesh.indices[k + c]].position);
+            };
+            const glm::dvec3 a = corner(0), u = corner(1) - a, v = corner(2) - a, p = place - a;
+            const double area = u.x * v.y - u.y * v.x;
+            if (!(area > 0)) continue;
+            const double s = (p.x * v.y - p.y * v.x) / area, t = (u.x * p.y - u.y * p.x) / area;
+            if (s >= 0 && t >= 0 && s + t <= 1) return a.z + s * u.z + t * v.z;
+        }
+    }
+    return place.z;
+}
+
 }  // namespace
 
 std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 resolution) {
@@ -54,6 +74,22 @@ std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 reso
     const glm::dvec3 middle = sum / static_cast<double>(city.reflectors.size());
     shots.push_back({"square", look(middle, towardsLane(city, middle), farAway), std::nullopt});
     return shots;
+}
+
+void parkBeside(FrameScene& frame, const Scene& scene, std::uint32_t reflector, double apart) {
+    if (frame.vehicles.empty() || reflector >= scene.city.reflectors.size()) return;
+    vehicles::VehiclePose& pose = frame.vehicles.front();
+    if (stands(pose) || pose.model >= scene.models.size()) return;
+    const city::StandingReflector& stone = scene.city.reflectors[reflector];
+    const glm::dvec3 direction = towardsLane(scene.city, glm::dvec3(stone.centre()));
+    const glm::dvec3 right = glm::cross(-direction, glm::dvec3(0, 0, 1));
+    const double away = stone.radius + apart + 0.5 * scene.models[pose.model].width;
+    pose.position = glm::dvec3(stone.foot) + away * right;
+    pose.position.z = groundBelow(scene.city, pose.position);
+    pose.heading = std::atan2(direction.y, direction.x);
+    pose.pitch = 0;
+    pose.speed = 0;
+    pose.steering = 0;
 }
 
 vehicles::Traffic busyTraffic(const Scene& scene, std::uint64_t seed, std::uint32_t cars, double seconds) {

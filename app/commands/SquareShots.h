@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands/LoadScene.h"
+#include "app/frame/FrameScene.h"
 #include "app/frame/View.h"
 #include "vehicles/traffic/Traffic.h"
 
@@ -22,6 +23,10 @@ struct SquareShot {
 /// Each reflector from near by (it fills half of the picture) and from 12 m, then all that stand together.
 /// Empty for a city without any.
 std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 resolution);
+
+/// One of the frame's cars (whichever comes first; a frame without any stays as it is) parked with its flank
+/// so many metres from a reflector's surface, to the right of who looks at it in a near shot.
+void parkBeside(FrameScene& frame, const Scene& scene, std::uint32_t reflector, double apart);
 
 /// Drives on to the moment within `seconds` at which most vehicles are near the reflectors: steps a traffic
 /// started twice. Deterministic.

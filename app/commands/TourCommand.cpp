@@ -9,7 +9,7 @@ Command tourCommand() {
     return {.name = "tour",
             .summary = "traffic drives, the camera tours: in a window, or as stills and a video in --out",
             .groups = cityOptions | trafficOptions | reflectionOptions | budgetOption | errorOptions |
-                      mirrorOptions | pictureOptions | outOptions | jsonOptions | durationOptions |
+                      mirrorOptions | chromeOptions | pictureOptions | outOptions | jsonOptions | durationOptions |
                       displayOptions,
             .benches = {},
             .run = [](const Options& options) {

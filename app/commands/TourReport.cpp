@@ -56,6 +56,12 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
     const auto raise = [](auto& most, auto value) {
         most = std::max<std::remove_reference_t<decltype(most)>>(most, value);
     };
+    const ChromeCounts& chrome = stats.drawn.chrome;
+    stretch->chromeJobs += chrome.jobs;
+    stretch->chromeMeshes += chrome.meshes;
+    stretch->chromeSearched += chrome.searched;
+    stretch->chromeMs.push_back(chrome.milliseconds);
+    raise(stretch->chromeTextureBytes, stats.drawn.chromeTextureBytes);
     raise(stretch->localMapBytes, stats.reflections.localMapBytes);
     raise(stretch->referenceMapBytes, stats.reflections.referenceMapBytes);
     raise(stretch->referenceMapGpuBytes, stats.reflections.referenceMapGpuBytes);
@@ -73,8 +79,8 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
 void TourReport::finish(bool partial, std::ostream& out) const {
     ResultFile results("tour", std::string(programVersion), renderer_);
     std::vector<std::vector<std::string>> table{{"method, quality, cars, size, hour", "frames", "ms: min",
-                                                 "median", "max", "reflections", "maps a frame",
-                                                 "local maps"}};
+                                                 "median", "max", "reflections", "maps a frame", "local maps",
+                                                 "chrome jobs", "their ms"}};
     std::string governed;
     const Stretch* most = nullptr;  // memory
     for (const Stretch& stretch : stretches_) {
@@ -88,7 +94,9 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                              std::to_string(stretch.size.y) + ", " + fixed(settings.hour, 1),
                          std::to_string(frame.n), fixed(frame.min, 1), fixed(frame.median, 1),
                          fixed(frame.max, 1), fixed(reflection.median, 1), fixed(mapsPerFrame, 1),
-                         byteSize(static_cast<double>(stretch.localMapBytes))});
+                         byteSize(static_cast<double>(stretch.localMapBytes)),
+                         fixed(static_cast<double>(stretch.chromeJobs) / static_cast<double>(frame.n), 2),
+                         fixed(timingOf(stretch.chromeMs).median, 1)});
         nlohmann::ordered_json row{{"method", methodOf(settings)},
                                    {"quality", nameOf(settings.quality)},
                                    {"city", options_.city},
@@ -104,6 +112,14 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                                    {"reference_map_bytes", stretch.referenceMapBytes},
                                    {"reference_map_gpu_bytes", stretch.referenceMapGpuBytes},
                                    {"reference_map_bytes_per_texel", stretch.bytesPerTexel}};
+        const auto perFrame = [&](std::uint64_t n) {
+            return static_cast<double>(n) / static_cast<double>(stretch.frameMs.size());
+        };
+        row["chrome_jobs_per_frame"] = perFrame(stretch.chromeJobs);
+        row["chrome_meshes_per_frame"] = perFrame(stretch.chromeMeshes);
+        row["chrome_searched_per_frame"] = perFrame(stretch.chromeSearched);
+        row["chrome_ms"] = toJson(timingOf(stretch.chromeMs));
+        row["chrome_texture_bytes"] = stretch.chromeTextureBytes;
         if (!stretch.positions.empty()) {
             const std::size_t middle = middleOf(stretch.positions);
             const double within = shareWithin(stretch.frameMs, 1.25 * settings.budgetMs);

@@ -199,6 +199,8 @@ PanelNews WindowTour::news() {
     news.reflections = stats_.reflections;
     news.drawn = stats_.drawn;
     news.mirrors = stats_.mirrors;
+    news.chromeParts = stats_.chromeParts;
+    news.chromeLeftOut = stats_.chromeLeftOut;
     news.vehicles = drive_.traffic().size();
     if (const Governor* governor = drive_.governor()) {
         news.ladder = governor->ladder().rungs();

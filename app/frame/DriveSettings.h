@@ -21,6 +21,8 @@ struct DriveSettings {
     int mirrorDepth = 2;           ///< mirrors in a row
     std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most
     double mirrorFade = 0;         ///< metres behind a mirror on which what it shows fades to 1/e; 0: not
+    bool chrome = true;            ///< chrome shows close things where they truly appear
+    double chromeShare = 0.096;    ///< of close vehicles' vertices, searched for themselves
     Weather weather = Weather::dry;  ///< wet streets need `mirrors`
 
     /// Whether details follow from a budget or an error instead of `quality`.

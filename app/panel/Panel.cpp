@@ -126,6 +126,7 @@ struct Panel::Impl {
     void drawSettings(const PanelNews& news, PanelChoices& choices);
     void drawBudget(const PanelNews& news, DriveSettings& settings);
     void drawMirrors(const PanelNews& news, DriveSettings& settings);
+    void drawChrome(const PanelNews& news, DriveSettings& settings);
     void drawCounters(const PanelNews& news);
 
     float budget = -1;
@@ -243,6 +244,29 @@ void Panel::Impl::drawMirrors(const PanelNews& news, DriveSettings& settings) {
     ImGui::EndTable();
 }
 
+void Panel::Impl::drawChrome(const PanelNews& news, DriveSettings& settings) {
+    if (!ImGui::CollapsingHeader("chrome")) return;
+    ImGui::Checkbox("show what is close", &settings.chrome);
+    if (!settings.chrome) return;
+    auto share = static_cast<float>(settings.chromeShare);
+    ImGui::SliderFloat("searched", &share, 0.01f, 1, "%.3f",
+                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    if (ImGui::IsItemEdited()) settings.chromeShare = static_cast<double>(share);
+    if (!ImGui::BeginTable("chrome", 2, ImGuiTableFlags_SizingStretchProp)) return;
+    const ChromeCounts& c = news.drawn.chrome;
+    row("parts of vehicles in view", "%.0f", news.chromeParts);
+    row("  that show what is close", "%.0f", c.jobs);
+    row("  left out for want of room", "%.0f", news.chromeLeftOut);
+    row("meshes in them", "%.0f", c.meshes);
+    row("  triangles", "%.0f", static_cast<double>(c.triangles));
+    row("  vertices", "%.0f", static_cast<double>(c.vertices));
+    row("  searched", "%.0f", static_cast<double>(c.searched));
+    row("searching, ms", "%.2f", c.searchMilliseconds);
+    row("in all, ms", "%.2f", c.milliseconds);
+    row("MiB", "%.1f", static_cast<double>(news.drawn.chromeTextureBytes) / (1024.0 * 1024.0));
+    ImGui::EndTable();
+}
+
 void Panel::Impl::drawCounters(const PanelNews& news) {
     if (!ImGui::BeginTable("counters", 2, ImGuiTableFlags_SizingStretchProp)) return;
     constexpr double mebi = 1024.0 * 1024.0;
@@ -298,6 +322,7 @@ void Panel::draw(const PanelNews& news, PanelChoices& choices) {
         drawFrameTimes(news.frameMs);
         impl_->drawSettings(news, choices);
         impl_->drawMirrors(news, choices.settings);
+        impl_->drawChrome(news, choices.settings);
         ImGui::Separator();
         impl_->drawCounters(news);
         ImGui::TextDisabled("%s", news.renderer.c_str());

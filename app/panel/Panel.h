@@ -38,6 +38,7 @@ struct PanelNews {
     ReflectionCounters reflections;
     RenderCounters drawn;
     MirrorCounters mirrors;
+    std::uint32_t chromeParts = 0, chromeLeftOut = 0;
     std::size_t vehicles = 0;
     std::span<const Rung> ladder;  ///< what a budget is held with; empty: there is none
     double position = 0;           ///< on it

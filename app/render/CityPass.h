@@ -41,6 +41,7 @@ class CityPass {
 
     /// Patterns to texture unit 0, table to uniform buffer 1.
     void bindMaterials() const { materials_.bind(); }
+    const CityMaterials& materials() const { return materials_; }
 
   private:
     struct Batch {

@@ -39,9 +39,10 @@ class SceneRenderer::Impl::Mirrors final : public reflection::MirrorScene {
         PassView fine = pass;
         // Nor does it where it is blurred.
         if (node.coarser > 0 && node.roughness <= 0) fine.pixelsPerRadian *= 2;
-        const VehiclePass::Counts vehicles = my_.vehiclePass.draw(
-            fine, PassTarget::cube, my_.poses, my_.chosen, {&reflections_.textures, reflections_.slots, 0},
-            static_cast<float>(my_.detail.vehicleTolerance));
+        const VehiclePass::Counts vehicles =
+            my_.vehiclePass.draw(fine, PassTarget::cube, my_.poses, my_.chosen,
+                                 {&reflections_.textures, reflections_.slots, 0, 0, 0, {}},
+                                 static_cast<float>(my_.detail.vehicleTolerance));
         const CityPass::Counts city = my_.cityPass.draw(pass, PassTarget::cube, foliageTolerance);
         // In the road's own image, from below, that is the sides of kerbs.
         if (wet_ && !roadBelow(node))

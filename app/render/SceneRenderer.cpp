@@ -69,7 +69,8 @@ bool SceneRenderer::drewLast(const View& view) const {
 }
 
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
-                             std::uint32_t framebuffer, const PlanarReflections& planar) {
+                             std::uint32_t framebuffer, const PlanarReflections& planar,
+                             const CloseReflections& close) {
     Impl& my = *impl_;
     my.counters = {};
     if (view.size.x <= 0 || view.size.y <= 0) return;
@@ -93,11 +94,13 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
         my.viewTarget);
     my.setFrame(pass);
 
+    VehiclePass::Reflections mirrored{
+        &reflections.textures, reflections.slots, reflections.mirrored, 0, 0, {}};
+    my.drawChrome(pass, reflections, close, mirrored);
     my.chosen.clear();
     for (const VisibleVehicle& v : my.visible(pass)) my.chosen.push_back(v.index);
     const VehiclePass::Counts vehicles =
-        my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen,
-                            {&reflections.textures, reflections.slots, reflections.mirrored},
+        my.vehiclePass.draw(pass, PassTarget::view, my.poses, my.chosen, mirrored,
                             static_cast<float>(my.detail.vehicleTolerance));
     const CityPass::Counts city = my.cityPass.draw(pass, PassTarget::view, foliageTolerance);
     const std::uint32_t lampCalls = my.signalLamps.draw(pass, PassTarget::view, my.signalColours);
@@ -113,6 +116,36 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     my.counters.chunksDrawn = city.chunksDrawn;
     my.counters.chunksCulled = city.chunksCulled;
     my.counters.vehiclesDrawn = vehicles.vehicles;
+}
+
+void SceneRenderer::setCloseScene(const CloseScene* scene) {
+    impl_->closeScene = scene;
+    impl_->cityChrome.reset();
+}
+
+void SceneRenderer::Impl::drawChrome(const PassView& pass, const VehicleReflections& reflections,
+                                     const CloseReflections& close, VehiclePass::Reflections& mirrored) {
+    withChrome.clear();
+    if (close.plan != nullptr && closeScene != nullptr && reflections.mirrored == 0)
+        for (const ChromeJob& job : close.plan->jobs)
+            if (job.view == close.view && job.vehicle < poses.size()) withChrome.push_back(job.vehicle);
+    if (withChrome.empty()) {
+        constexpr std::uint32_t patience = 60;
+        if (cityChrome && ++framesWithoutChrome > patience) cityChrome.reset();
+        return;
+    }
+    framesWithoutChrome = 0;
+    std::ranges::sort(withChrome);
+    if (!cityChrome) cityChrome = std::make_unique<CityChrome>(*closeScene);
+    counters.chrome =
+        cityChrome->draw(*close.plan, close.view, pass, viewTarget.drawn(), cityPass.materials(),
+                         {poses, &reflections.textures, reflections.slots}, close.drawing);
+    counters.chromeTextureBytes = cityChrome->bytes();
+    mirrored.closeLight = cityChrome->light();
+    mirrored.closeDepth = cityChrome->depth();
+    mirrored.withChrome = withChrome;
+    glBindFramebuffer(GL_FRAMEBUFFER, viewTarget.framebuffer());
+    glViewport(0, 0, viewTarget.drawn().x, viewTarget.drawn().y);
 }
 
 void SceneRenderer::drawCube(const glm::dvec3& centre, const reflection::CubeTarget& target,

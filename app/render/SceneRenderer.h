@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "app/frame/ChromeDrawing.h"
 #include "app/frame/Detail.h"
 #include "app/frame/FrameScene.h"
 #include "app/frame/MirrorPlan.h"
@@ -16,6 +17,9 @@
 #include "vehicles/models/VehicleModel.h"
 
 namespace app {
+
+struct ChromePlan;
+struct CloseScene;
 
 enum class Antialiasing : std::uint8_t { none, fxaa, msaa4 };
 
@@ -34,6 +38,8 @@ struct RenderCounters {
     std::uint32_t mirrorPasses = 0;        ///< reflections drawn for windows
     std::uint64_t mirrorTriangles = 0;     ///< in them
     std::uint64_t mirrorTextureBytes = 0;  ///< colour and depth of their maps, held now
+    ChromeCounts chrome;                   ///< close things in chrome
+    std::uint64_t chromeTextureBytes = 0;  ///< of the images for them, held now
 };
 
 /// How the vehicles of a frame reflect.
@@ -50,6 +56,13 @@ struct PlanarReflections {
     const MirrorPlan* plan = nullptr;  ///< null: glass is as it is painted on the walls
     std::uint32_t root = 0;            ///< of the plan's tree: this view
     bool wet = false;                  ///< it has rained: ground that no map serves shines by mean light
+};
+
+/// What chrome shows of close things in a view.
+struct CloseReflections {
+    const ChromePlan* plan = nullptr;  ///< null: all chrome mirrors its vehicle's map
+    std::uint32_t view = 0;            ///< of the plan: this view
+    ChromeDrawing drawing = {};
 };
 
 /// Draws city and vehicles with OpenGL 4.5. Owns the GL objects of one city and one set of vehicle models;
@@ -82,7 +95,12 @@ class SceneRenderer final : public reflection::SceneDrawer {
     /// 8 bit. With a mirror plan: the reflections it lists first, each into its level's map, and glass
     /// without a map by mean light. Textures for maps are kept while plans use them.
     void drawView(const View& view, const VehicleReflections& reflections, std::uint32_t framebuffer,
-                  const PlanarReflections& planar = {});
+                  const PlanarReflections& planar = {}, const CloseReflections& close = {});
+
+    /// The chrome, and what may be close to it, to which plans of close reflections refer; null: none.
+    /// Without it such plans are ignored. Keeps the pointer. What drawing them needs is made when a plan
+    /// first has jobs, and given back after a second's worth of frames without any.
+    void setCloseScene(const CloseScene* scene);
 
     /// Whether a box is surely hidden by buildings from an eye that may look through a mirror: what
     /// MirrorPlanner asks. Answers for the eyes of one frame are kept until `prepare`.

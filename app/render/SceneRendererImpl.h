@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/render/CityChrome.h"
 #include "app/render/CityPass.h"
 #include "app/render/CubeDestination.h"
 #include "app/render/FrameUniforms.h"
@@ -90,6 +91,10 @@ struct SceneRenderer::Impl {
         });
     }
 
+    /// Close things in chrome, and where the vehicles' shader finds them.
+    void drawChrome(const PassView& pass, const VehicleReflections& reflections,
+                    const CloseReflections& close, VehiclePass::Reflections& mirrored);
+
     /// The city's glass in a view whose city and vehicles are drawn.
     void drawGlass(const PassView& pass, const VehicleReflections& reflections,
                    const PlanarReflections& planar);
@@ -144,6 +149,11 @@ struct SceneRenderer::Impl {
     std::unique_ptr<reflection::MirrorPass> mirrorPass;  ///< while plans need it
     std::vector<bool> mapped;
     std::vector<std::uint32_t> fronts;
+
+    const CloseScene* closeScene = nullptr;
+    std::unique_ptr<CityChrome> cityChrome;  ///< while plans need it
+    std::uint32_t framesWithoutChrome = 0;
+    std::vector<std::uint32_t> withChrome;
 
     CubeDestination cube;
 

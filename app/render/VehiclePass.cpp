@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <tuple>
+#include <utility>
 
 #include "app/frame/VehicleLevels.h"
 #include "app/frame/VehicleShading.h"
@@ -24,16 +25,19 @@ VehiclePass::VehiclePass(std::span<const vehicles::VehicleModel> models) : geome
     // One level at a time: the level is chosen per pixel, and half the fetches are what reflections cost most
     // in software.
     mapSampler_ = reflection::gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
-    for (std::size_t target = 0; target < 2; ++target) {
-        for (const Mirror mirror : {Mirror::plain, Mirror::map, Mirror::parallax, Mirror::screen}) {
-            std::vector<std::string> defines = definesFor(static_cast<PassTarget>(target));
-            if (mirror == Mirror::map || mirror == Mirror::parallax) defines.emplace_back("REFLECTIVE");
-            if (mirror == Mirror::parallax) defines.emplace_back("PARALLAX");
-            if (mirror == Mirror::screen) defines.emplace_back("SCREEN");
+    for (std::size_t target = 0; target < 2; ++target)
+        for (const Mirror mirror : {Mirror::plain, Mirror::map, Mirror::parallax, Mirror::screen})
             programs_[target][static_cast<std::size_t>(mirror)] =
-                reflection::gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
-        }
-    }
+                programFor(static_cast<PassTarget>(target), mirror, false);
+}
+
+reflection::gl::Program VehiclePass::programFor(PassTarget target, Mirror mirror, bool chrome) {
+    std::vector<std::string> defines = definesFor(target);
+    if (mirror == Mirror::map || mirror == Mirror::parallax) defines.emplace_back("REFLECTIVE");
+    if (mirror == Mirror::parallax) defines.emplace_back("PARALLAX");
+    if (mirror == Mirror::screen) defines.emplace_back("SCREEN");
+    if (chrome) defines.emplace_back("CHROME");
+    return reflection::gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
 }
 
 glm::vec3 VehiclePass::centreOf(const vehicles::VehiclePose& pose, const glm::dvec3& eye) const {
@@ -85,6 +89,8 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                                 sizeClass < reflections.textures->cubeArrays.size() &&
                                 reflections.textures->cubeArrays[sizeClass] != 0;
         const std::int32_t group = reflective ? static_cast<std::int32_t>(sizeClass) : -1;
+        const bool chrome = reflections.closeLight != 0 && target == PassTarget::view &&
+                            std::ranges::binary_search(reflections.withChrome, index);
         glm::vec4 map(0, 0, 0, slot.layer);
         if (reflective && parallax(sizeClass))
             map = glm::vec4(
@@ -92,7 +98,7 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
                           view.eye),
                 map.w);
         const auto add = [&](const MeshRange& range, const VehicleInstance& instance) {
-            if (!range.empty()) pieces_.push_back({group, range.firstIndex, range, instance});
+            if (!range.empty()) pieces_.push_back({group, chrome, range.firstIndex, range, instance});
         };
         add(model.levels[level].body, instanceOf(rotation, position, pose, map));
         if (!model.levels[level].wheelsInBody && !model.wheelLevels.empty()) {
@@ -112,7 +118,9 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
 
     order_.resize(pieces_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
-    const auto key = [&](std::uint32_t i) { return std::tuple(pieces_[i].sizeClass, pieces_[i].firstIndex); };
+    const auto key = [&](std::uint32_t i) {
+        return std::tuple(pieces_[i].sizeClass, pieces_[i].chrome, pieces_[i].firstIndex);
+    };
     std::ranges::stable_sort(order_, [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     instances_.clear();
     for (std::uint32_t i : order_) instances_.push_back(pieces_[i].instance);
@@ -121,24 +129,31 @@ VehiclePass::Counts VehiclePass::draw(const PassView& view, PassTarget target,
     geometry_.array().bind();
     mapSampler_.bind(2);
     glEnable(GL_CULL_FACE);
-    int used = -2;
+    std::pair<int, bool> used{-2, false};
     for (std::size_t first = 0; first < order_.size();) {
         std::size_t last = first;
         while (last < order_.size() && key(order_[last]) == key(order_[first])) ++last;
         const Piece& piece = pieces_[order_[first]];
-        if (piece.sizeClass != used) {
-            used = piece.sizeClass;
-            const auto sizeClass = static_cast<std::size_t>(std::max(used, 0));
-            const Mirror mirror = used >= 0 ? (parallax(sizeClass) ? Mirror::parallax : Mirror::map)
+        if (const std::pair wanted(piece.sizeClass, piece.chrome); wanted != used) {
+            used = wanted;
+            const auto sizeClass = static_cast<std::size_t>(std::max(piece.sizeClass, 0));
+            const Mirror mirror = piece.sizeClass >= 0
+                                      ? (parallax(sizeClass) ? Mirror::parallax : Mirror::map)
                                   : reflections.mirrored != 0 ? Mirror::screen
                                                               : Mirror::plain;
-            const reflection::gl::Program& program =
-                programs_[static_cast<std::size_t>(target)][static_cast<std::size_t>(mirror)];
-            program.use();
+            const auto which = static_cast<std::size_t>(mirror);
+            if (piece.chrome && !chromePrograms_[which])
+                chromePrograms_[which] = programFor(PassTarget::view, mirror, true);
+            (piece.chrome ? chromePrograms_[which] : programs_[static_cast<std::size_t>(target)][which])
+                .use();
             if (mirror == Mirror::screen) glBindTextureUnit(3, reflections.mirrored);
-            if (used >= 0) glBindTextureUnit(2, reflections.textures->cubeArrays[sizeClass]);
+            if (piece.sizeClass >= 0) glBindTextureUnit(2, reflections.textures->cubeArrays[sizeClass]);
             if (mirror == Mirror::parallax) {
                 glBindTextureUnit(4, reflections.textures->nearnessArrays[sizeClass]);
+            }
+            if (piece.chrome) {
+                glBindTextureUnit(5, reflections.closeLight);
+                glBindTextureUnit(6, reflections.closeDepth);
             }
         }
         glDrawElementsInstancedBaseVertexBaseInstance(

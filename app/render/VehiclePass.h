@@ -23,6 +23,9 @@ class VehiclePass {
         const reflection::LocalMapTextures* textures = nullptr;
         std::span<const reflection::LocalMapSlot> slots;  ///< one per pose, or empty
         std::uint32_t mirrored = 0;  ///< GL name of a ScreenLight's texture, in place of all maps; 0: none
+        /// What chrome shows of close things: see CityChrome. 0: none.
+        std::uint32_t closeLight = 0, closeDepth = 0;
+        std::span<const std::uint32_t> withChrome;  ///< indices of the poses that it holds, rising
     };
     struct Counts {
         std::uint32_t drawCalls = 0;
@@ -43,8 +46,10 @@ class VehiclePass {
   private:
     /// Where a vehicle finds what it mirrors.
     enum class Mirror : std::uint8_t { plain, map, parallax, screen };
+    static reflection::gl::Program programFor(PassTarget target, Mirror mirror, bool chrome);
     struct Piece {
         std::int32_t sizeClass;  ///< -1: plain
+        bool chrome;             ///< shows what is close
         std::uint32_t firstIndex;
         MeshRange range;
         VehicleInstance instance;
@@ -53,6 +58,7 @@ class VehiclePass {
     VehicleGeometry geometry_;
     reflection::gl::Sampler mapSampler_;
     std::array<std::array<reflection::gl::Program, 4>, 2> programs_;  ///< [target][Mirror]
+    std::array<reflection::gl::Program, 4> chromePrograms_;  ///< [Mirror], of views; made when first needed
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> order_;
     std::vector<VehicleInstance> instances_;

@@ -10,7 +10,7 @@ layout(location = 1) flat in float layer;
 layout(location = 2) in vec3 shaded;
 layout(location = 3) in vec3 sunlit;
 layout(location = 4) in vec3 shadowCoordinate;
-#ifdef CUBE
+#if defined CUBE || defined VIRTUAL
 layout(location = 5) in vec3 relative;
 #endif
 
@@ -20,7 +20,7 @@ void main() {
     if (texel.a < 0.5) discard;
 #endif
     vec3 radiance = texel.rgb * texel.rgb * (shaded + sunlit * texture(sunShadow, shadowCoordinate));
-#ifdef CUBE
+#if defined CUBE || defined VIRTUAL
     writePixel(radiance, relative);
 #else
     writePixel(radiance);

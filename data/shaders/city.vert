@@ -12,17 +12,29 @@ struct MaterialEntry {
 };
 layout(std140, binding = 1) uniform Materials { MaterialEntry materials[1024]; };
 
+#ifdef VIRTUAL
+// Seen in a piece of chrome: where it is seen there, and what it is where it truly stands.
+layout(location = 0) in vec3 fromEye;  // in the reflector's frame, as far away as the light's whole path is long
+layout(location = 1) in vec3 position;
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) in vec3 normal;
+layout(location = 4) in float materialIndex;
+uniform mat4 clipFromVirtual;
+uniform mat4 relativeFromMesh;
+const float open = 1.0;
+#else
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texcoord;
 layout(location = 2) in vec4 normal;
 layout(location = 3) in uint material;
 layout(location = 4) in float open;
+#endif
 #ifdef INSTANCED
 layout(location = 5) in vec4 worldFromPrototype0;  // rows
 layout(location = 6) in vec4 worldFromPrototype1;
 layout(location = 7) in vec4 worldFromPrototype2;
 #endif
-#if defined CUBE || defined WET
+#if defined CUBE || defined WET || defined VIRTUAL
 layout(location = 5) out vec3 relativeOut;
 #endif
 #ifdef WET
@@ -38,6 +50,14 @@ layout(location = 4) out vec3 shadowOut;
 #endif
 
 void main() {
+#if defined VIRTUAL
+    vec3 relative = (relativeFromMesh * vec4(position, 1.0)).xyz;
+    vec3 world = relative + frame.eyeHigh.xyz + frame.eyeLow.xyz;
+    vec3 n = normalize(normal);
+    uint material = uint(materialIndex + 0.5);
+    gl_Position = clipFromVirtual * vec4(fromEye, 1.0);
+    relativeOut = relative;
+#else
 #ifdef INSTANCED
     vec4 local = vec4(position, 1.0);
     vec3 world = vec3(dot(worldFromPrototype0, local), dot(worldFromPrototype1, local), dot(worldFromPrototype2, local));
@@ -57,6 +77,7 @@ void main() {
 #endif
 #ifdef LAYERED
     gl_Layer = int(frame.eyeLow.w);
+#endif
 #endif
     MaterialEntry m = materials[material];
     texcoordOut = texcoord;

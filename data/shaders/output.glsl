@@ -1,5 +1,12 @@
 // Where shaded pixels go: a view takes display colours, a cube linear radiance and the distance from its centre.
-#ifdef CUBE
+#if defined VIRTUAL
+// What a piece of chrome shows of things close to it: linear radiance, and how much of it covers the local map's.
+uniform vec4 closeAround;  // the piece's middle, relative to the eye; w: metres from there on which the map shows all
+layout(location = 0) out vec4 radianceOut;
+void writePixel(vec3 radiance, vec3 relative) {
+    radianceOut = vec4(radiance, 1.0 - smoothstep(0.6, 1.0, distance(relative, closeAround.xyz) / closeAround.w));
+}
+#elif defined CUBE
 layout(location = 0) out vec4 radianceOut;
 layout(location = 1) out float distanceOut;
 // What the way behind a mirror leaves; beyond a mirror on it, that mirror's own image has seen to it. The sky is infinitely far.

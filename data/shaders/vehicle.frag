@@ -30,12 +30,22 @@ float nearnessOfHit(vec3 from, vec3 towards) {
     return first / max(2.0 - second / max(first, 1e-6), 0.25);
 }
 #endif
+#ifdef VIRTUAL
+layout(location = 5) in vec3 seenFrom;
+#else
+const vec3 seenFrom = vec3(0.0);
+#endif
+#ifdef CHROME
+// What chrome in this view shows of things close to it, and how far away that chrome is (reversed depth).
+layout(binding = 5) uniform sampler2D closeLight;
+layout(binding = 6) uniform sampler2D closeDepth;
+#endif
 #ifdef SCREEN
 layout(binding = 3) uniform sampler2D screenLight;  // what this pixel mirrors
 #endif
 
 void main() {
-    vec3 towardsEye = -normalize(relative);
+    vec3 towardsEye = normalize(seenFrom - relative);
     vec3 n = normalize(normal);
     float facing = max(dot(n, towardsEye), 0.0);
     float grazing = 1.0 - facing;
@@ -67,8 +77,16 @@ void main() {
     glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint;
     mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y * coat.z);
 #endif
+#ifdef CHROME
+    if (coat.x > 0.6) {
+        // Of this very part: within a twentieth of its distance, more than a level of detail is off by.
+        float depth = texelFetch(closeDepth, ivec2(gl_FragCoord.xy), 0).r;
+        vec4 close = texelFetch(closeLight, ivec2(gl_FragCoord.xy), 0);
+        if (abs(depth - gl_FragCoord.z) < 0.05 * gl_FragCoord.z) mirrored = mix(mirrored, close.rgb, close.a);
+    }
+#endif
     vec3 radiance = diffuse * (1.0 - fresnel) + mirrored * fresnel;
-#ifdef CUBE
+#if defined CUBE || defined VIRTUAL
     writePixel(radiance, relative);
 #else
     writePixel(radiance);

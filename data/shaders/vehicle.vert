@@ -21,6 +21,19 @@ const vec4 surfaces[12] = vec4[12](vec4(1.0, 1.0, 1.0, 0.04),     // paint: time
 
 layout(binding = 1) uniform sampler2DShadow sunShadow;
 
+#ifdef VIRTUAL
+// Seen in a piece of chrome: where it is seen there, and what it is where it truly is.
+layout(location = 0) in vec3 fromEye;  // in the reflector's frame, as far away as the light's whole path is long
+layout(location = 1) in vec3 position;
+layout(location = 2) in vec3 normal;
+layout(location = 3) in float surfaceIndex;
+uniform mat4 clipFromVirtual;
+uniform mat3 worldFromReflector;
+uniform mat4 relativeFromMesh;
+uniform vec4 paint;
+uniform vec4 map;
+layout(location = 5) out vec3 seenFromOut;  // the reflection point, relative to the eye
+#else
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in uint surface;
@@ -29,6 +42,7 @@ layout(location = 4) in vec4 relativeFromVehicle1;
 layout(location = 5) in vec4 relativeFromVehicle2;
 layout(location = 6) in vec4 paint;                 // rgb; w: 1 braking
 layout(location = 7) in vec4 map;                   // centre of the local map, relative; w: its cube
+#endif
 
 layout(location = 0) out vec3 relativeOut;
 layout(location = 1) out vec3 normalOut;
@@ -39,6 +53,18 @@ layout(location = 4) flat out vec4 mapOut;
 #endif
 
 void main() {
+#ifdef VIRTUAL
+    vec3 relative = (relativeFromMesh * vec4(position, 1.0)).xyz;
+    vec3 n = normalize(mat3(relativeFromMesh) * normal);
+    uint surface = uint(surfaceIndex + 0.5);
+    gl_Position = clipFromVirtual * vec4(fromEye, 1.0);
+    // The tangent plane at the reflection point halves the way from the vertex to its image.
+    vec3 image = worldFromReflector * fromEye;
+    vec3 across = image - relative;
+    float along = dot(image, across);
+    float t = 0.5 * dot(relative + image, across) / (abs(along) > 1e-6 ? along : 1e-6);
+    seenFromOut = clamp(t, 0.0, 1.0) * image;
+#else
     vec4 local = vec4(position, 1.0);
     vec3 relative = vec3(dot(relativeFromVehicle0, local), dot(relativeFromVehicle1, local), dot(relativeFromVehicle2, local));
     vec3 n = normalize(vec3(dot(relativeFromVehicle0.xyz, normal.xyz), dot(relativeFromVehicle1.xyz, normal.xyz),
@@ -46,6 +72,7 @@ void main() {
     gl_Position = frame.clipFromRelative * vec4(relative, 1.0);
 #ifdef LAYERED
     gl_Layer = int(frame.eyeLow.w);
+#endif
 #endif
     vec4 s = surfaces[surface];
     vec3 albedo = surface == 0u || surface == 10u ? paint.rgb : s.rgb;

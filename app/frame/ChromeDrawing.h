@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+namespace app {
+
+/// How close things are searched for and drawn.
+struct ChromeDrawing {
+    /// Of a vehicle's vertices, searched for themselves; the rest follow on grids (BoundingGrid).
+    double share = 0.096;
+    double tolerance = 0.5;  ///< pixels by which a reflected edge may be off where it is drawn straight
+    double detail = 1;       ///< pixels in the chrome by which close vehicles' levels may be off
+};
+
+/// What one view's close chrome took.
+struct ChromeCounts {
+    std::uint32_t jobs = 0, meshes = 0;
+    std::uint64_t vertices = 0, searched = 0, triangles = 0;
+    double milliseconds = 0;        ///< searching and handing over, CPU side
+    double searchMilliseconds = 0;  ///< the searches alone, on all cores
+};
+
+}  // namespace app

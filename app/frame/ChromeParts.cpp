@@ -1,0 +1,171 @@
+#include "app/frame/ChromeParts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+namespace app {
+
+namespace {
+
+/// Metres to which parts are compared: a tenth of what bends an image by a visible angle, and far above what
+/// floats lose when a part is modelled in another place.
+constexpr float sameWithin = 2e-5f;
+constexpr float sameNormal = 1e-3f;
+/// Metres below which a part shows nothing.
+constexpr float leastRadius = 0.005f;
+
+/// Sharper than 30 degrees, an edge is where one mirror ends and another begins.
+constexpr float creaseCosine = 0.866f;
+
+/// Whether two parts, each around its own centre, are the same: corner by corner, rounding aside.
+bool same(const city::Mesh& a, const city::Mesh& b) {
+    if (a.indices != b.indices || a.vertices.size() != b.vertices.size()) return false;
+    for (std::size_t i = 0; i < a.vertices.size(); ++i) {
+        const glm::vec3 moved = glm::abs(a.vertices[i].position - b.vertices[i].position);
+        const glm::vec3 turned = glm::abs(a.vertices[i].normal - b.vertices[i].normal);
+        if (std::max({moved.x, moved.y, moved.z}) > sameWithin ||
+            std::max({turned.x, turned.y, turned.z}) > sameNormal)
+            return false;
+    }
+    return true;
+}
+
+float areaOf(const city::Mesh& mesh) {
+    float sum = 0;
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+        const glm::vec3& a = mesh.vertices[mesh.indices[k]].position;
+        sum += 0.5f * glm::length(glm::cross(mesh.vertices[mesh.indices[k + 1]].position - a,
+                                             mesh.vertices[mesh.indices[k + 2]].position - a));
+    }
+    return sum;
+}
+
+std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
+    while (parents[i] != i) i = parents[i] = parents[parents[i]];
+    return i;
+}
+
+}  // namespace
+
+std::vector<city::Mesh> chromeComponents(const city::Mesh& mesh) {
+    constexpr auto chrome = static_cast<std::uint32_t>(vehicles::Surface::chrome);
+    const std::size_t n = mesh.vertices.size();
+    std::vector<std::uint32_t> parents(n);
+    std::iota(parents.begin(), parents.end(), 0u);
+    std::multimap<std::tuple<float, float, float>, std::uint32_t> places;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const city::Vertex& v = mesh.vertices[i];
+        if (v.material != chrome) continue;
+        const std::tuple place(v.position.x, v.position.y, v.position.z);
+        const auto [first, last] = places.equal_range(place);
+        for (auto at = first; at != last; ++at)
+            if (glm::dot(mesh.vertices[at->second].normal, v.normal) > creaseCosine)
+                parents[root(parents, i)] = root(parents, at->second);
+        places.emplace(place, i);
+    }
+    const auto isChrome = [&](std::size_t k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t i = mesh.indices[k + c];
+            if (i >= n || mesh.vertices[i].material != chrome) return false;
+            const glm::vec3& p = mesh.vertices[i].position;
+            if (!std::isfinite(p.x + p.y + p.z)) return false;
+        }
+        return true;
+    };
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+        if (!isChrome(k)) continue;
+        for (const std::size_t c : {1u, 2u})
+            parents[root(parents, mesh.indices[k + c])] = root(parents, mesh.indices[k]);
+    }
+    std::vector<city::Mesh> components;
+    std::map<std::uint32_t, std::size_t> byRoot;
+    std::map<std::uint32_t, std::uint32_t> placed;
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+        if (!isChrome(k)) continue;
+        const auto [found, isNew] = byRoot.try_emplace(root(parents, mesh.indices[k]), components.size());
+        if (isNew) components.emplace_back();
+        city::Mesh& component = components[found->second];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t i = mesh.indices[k + c];
+            const auto [at, first] =
+                placed.try_emplace(i, static_cast<std::uint32_t>(component.vertices.size()));
+            if (first) component.vertices.push_back(mesh.vertices[i]);
+            component.indices.push_back(at->second);
+        }
+    }
+    return components;
+}
+
+struct ChromeParts::Shape {
+    city::Mesh mesh;
+    std::once_flag once;
+    std::atomic<bool> made{false};
+    reflection::Reflector reflector;
+};
+
+ChromeParts::ChromeParts() = default;
+ChromeParts::~ChromeParts() = default;
+ChromeParts::ChromeParts(ChromeParts&&) noexcept = default;
+ChromeParts& ChromeParts::operator=(ChromeParts&&) noexcept = default;
+
+ChromeParts::ChromeParts(std::span<const vehicles::VehicleModel> models) {
+    for (const vehicles::VehicleModel& model : models) {
+        std::vector<ChromePart>& parts = models_.emplace_back();
+        const auto take = [&](const city::Mesh& mesh, bool onWheel) {
+            for (city::Mesh& component : chromeComponents(mesh)) {
+                ChromePart part;
+                part.onWheel = onWheel;
+                part.centre = component.bounds().centre();
+                for (city::Vertex& v : component.vertices) {
+                    v.position -= part.centre;
+                    part.radius = std::max(part.radius, glm::length(v.position));
+                }
+                if (part.radius < leastRadius) continue;
+                part.width = areaOf(component) / (2 * std::numbers::pi_v<float> * part.radius);
+                const auto known = std::ranges::find_if(
+                    shapes_, [&](const auto& shape) { return same(shape->mesh, component); });
+                part.shape = static_cast<std::uint32_t>(known - shapes_.begin());
+                if (known == shapes_.end())
+                    shapes_.emplace_back(std::make_unique<Shape>())->mesh = std::move(component);
+                parts.push_back(part);
+            }
+        };
+        if (!model.levels.empty()) take(model.levels.front().body, false);
+        if (!model.wheels.empty()) take(model.wheel, true);
+        std::stable_sort(parts.begin(), parts.end(),
+                         [](const ChromePart& a, const ChromePart& b) { return a.width > b.width; });
+    }
+}
+
+const reflection::Reflector& ChromeParts::reflectorOf(const ChromePart& part) const {
+    Shape& shape = *shapes_[part.shape];
+    std::call_once(shape.once, [&] {
+        shape.reflector = reflection::makeReflector(shape.mesh);
+        shape.made = true;
+    });
+    return shape.reflector;
+}
+
+std::size_t ChromeParts::reflectorsMade() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(shapes_, [](const auto& shape) { return shape->made.load(); }));
+}
+
+std::size_t ChromeParts::bytes() const {
+    std::size_t sum = 0;
+    for (const auto& shape : shapes_)
+        if (shape->made)
+            for (const reflection::ReflectorPiece& piece : shape->reflector.pieces)
+                sum += piece.built.map.bytes();
+    return sum;
+}
+
+}  // namespace app

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "reflection/chrome/ReflectorPieces.h"
+#include "vehicles/models/VehicleModel.h"
+
+namespace app {
+
+/// A connected piece of chrome of a vehicle, or of what stands in the city.
+struct ChromePart {
+    std::uint32_t shape = 0;  ///< of ChromeParts: those that are the same but for their place share one
+    glm::vec3 centre{0};      ///< of its bounding box: in the vehicle's frame, or the wheel's
+    float radius = 0;         ///< of the ball around `centre` that holds it
+    /// Of a sphere of as much surface per radius: strips are narrow, however long, metres.
+    float width = 0;
+    bool onWheel = false;  ///< it is there on every wheel, and turns with it
+};
+
+/// The chrome of vehicle models: what of them may show close things by searched reflection points. Made once,
+/// of the finest levels, whatever is drawn. Parts that are the same but for their place (handles, the lips of
+/// wheels' covers) share one reflector.
+class ChromeParts {
+  public:
+    ChromeParts();
+    /// Keeps nothing of the models. Parts of no size, or with corners that are not finite, are left out.
+    /// Cost: some milliseconds a model.
+    explicit ChromeParts(std::span<const vehicles::VehicleModel> models);
+    ~ChromeParts();
+    ChromeParts(ChromeParts&&) noexcept;
+    ChromeParts& operator=(ChromeParts&&) noexcept;
+
+    /// Of a model, the widest first; nothing for one that is not known.
+    std::span<const ChromePart> of(std::size_t model) const {
+        return model < models_.size() ? std::span<const ChromePart>(models_[model])
+                                      : std::span<const ChromePart>();
+    }
+    bool empty() const { return shapes_.empty(); }
+    std::size_t shapes() const { return shapes_.size(); }
+
+    /// Ready for searches, in a frame with the axes of body or wheel and its origin in the part's `centre`.
+    /// Made when it is first asked for (tens of milliseconds; a scene without chrome near the viewer makes
+    /// none), by any thread, and kept.
+    const reflection::Reflector& reflectorOf(const ChromePart& part) const;
+    std::size_t reflectorsMade() const;
+    std::size_t bytes() const;  ///< of the maps made
+
+  private:
+    struct Shape;
+    std::vector<std::vector<ChromePart>> models_;
+    std::vector<std::unique_ptr<Shape>> shapes_;
+};
+
+/// The connected components of a mesh's chrome, corners joined by position but across creases: what
+/// ChromeParts makes reflectors of.
+std::vector<city::Mesh> chromeComponents(const city::Mesh& mesh);
+
+}  // namespace app

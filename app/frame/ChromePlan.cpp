@@ -1,0 +1,186 @@
+#include "app/frame/ChromePlan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "app/frame/StandingReflectors.h"
+#include "app/frame/VehicleLevels.h"
+#include "app/frame/VehicleShading.h"
+
+namespace app {
+
+namespace {
+
+/// A share reaches 1 where what it grows with is so many times what it begins at.
+constexpr double full = 2;
+
+/// A part shows at least what is within so many times its distance from its map's middle: there the map is
+/// off.
+constexpr double mapRadii = 3;
+
+double rise(double value, double from) {
+    const double t = std::clamp((value / from - 1) / (full - 1), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+glm::dmat4 rigid(const glm::dmat3& turn, const glm::dvec3& origin) {
+    return glm::dmat4(glm::dvec4(turn[0], 0), glm::dvec4(turn[1], 0), glm::dvec4(turn[2], 0),
+                      glm::dvec4(origin, 1));
+}
+
+/// Half the sides of the box that a vehicle fills, and its middle in the vehicle's frame.
+struct Body {
+    glm::dvec3 half, middle;
+};
+Body bodyOf(const vehicles::VehicleModel& model) {
+    const glm::dvec3 size(model.length, model.width, model.height);
+    return {0.5 * size, glm::dvec3(0, 0, 0.5 * size.z)};
+}
+
+/// From a place to a vehicle's box, metres; 0 within it.
+double distanceTo(const vehicles::VehiclePose& pose, const vehicles::VehicleModel& model,
+                  const glm::dvec3& place) {
+    const Body body = bodyOf(model);
+    const glm::dvec3 local = (place - pose.position) * glm::dmat3(worldFromVehicle(pose)) - body.middle;
+    return glm::length(glm::max(glm::abs(local) - body.half, glm::dvec3(0)));
+}
+
+/// A part on a side of its vehicle's box is not seen from beyond the plane of that side.
+bool behindItsVehicle(const glm::dvec3& part, double radius, const glm::dvec3& eye, const Body& body) {
+    for (const int axis : {0, 1}) {
+        const double at = part[axis] - body.middle[axis];
+        if (std::abs(at) < 0.7 * body.half[axis]) continue;
+        const double side = at > 0 ? 1 : -1;
+        if (side * (eye[axis] - part[axis]) < -radius) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,
+                                   const glm::vec3& centre, float radius) {
+    const reflection::PixelRect all{glm::ivec2(0), size};
+    const float distance = glm::length(centre);
+    if (distance <= 1.1f * radius) return all;
+    // The eight corners of the ball's box; where one lies behind the eye, the whole image.
+    glm::vec2 low(1e9f), high(-1e9f);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 at =
+            centre + radius * glm::vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                        (corner & 4) != 0 ? 1 : -1);
+        const glm::vec4 clip = clipFromRelative * glm::vec4(at, 1);
+        if (!(clip.w > 0)) {
+            const glm::vec4 middle = clipFromRelative * glm::vec4(centre, 1);
+            return middle.w < -2 * radius ? reflection::PixelRect{} : all;
+        }
+        const glm::vec2 p = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(size);
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const auto inside = [&](const glm::vec2& p) {
+        return glm::ivec2(glm::clamp(p, glm::vec2(0), glm::vec2(size)));
+    };
+    return {inside(glm::floor(low)), inside(glm::ceil(high))};
+}
+
+ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> seen,
+                      std::span<const vehicles::VehicleModel> models, const ChromeParts& parts,
+                      const ChromePlanOptions& options) {
+    ChromePlan plan;
+    if (!options.on || parts.empty()) return plan;
+    const auto add = [&](std::uint32_t viewIndex, std::uint32_t index, std::uint32_t p, std::uint32_t wheel) {
+        ++plan.parts;
+        const View& view = scene.views[viewIndex];
+        const vehicles::VehiclePose& pose = scene.vehicles[index];
+        const vehicles::VehicleModel& model = models[pose.model];
+        const ChromePart& part = parts.of(pose.model)[p];
+        glm::dmat3 turn(worldFromVehicle(pose));
+        glm::dvec3 own(part.centre);
+        glm::dmat3 vehicleFromPart(1);
+        if (wheel != ChromeJob::noWheel) {
+            vehicleFromPart = glm::dmat3(vehicleFromWheel(model.wheels[wheel], pose));
+            own = glm::dvec3(model.wheels[wheel].centre) + vehicleFromPart * own;
+        }
+        ChromeJob job;
+        job.view = viewIndex;
+        job.vehicle = index;
+        job.part = p;
+        job.wheel = wheel;
+        job.radius = static_cast<double>(part.radius);
+        const glm::dvec3 origin = pose.position + turn * own;
+        job.worldFromPart = rigid(turn * vehicleFromPart, origin);
+
+        const glm::mat4 clip = view.clipFromView * view.viewFromWorld;
+        const glm::dvec3 towards = origin - view.eye;
+        if (pixelsOfBall(clip, view.size, glm::vec3(towards), part.radius).empty() ||
+            (!stands(pose) &&
+             behindItsVehicle(own, job.radius, (view.eye - pose.position) * turn, bodyOf(model)))) {
+            ++plan.outOfSight;
+            return;
+        }
+        const double distance = std::max(glm::length(towards), job.radius);
+        const double perRadian = 0.5 * view.size.y * std::abs(static_cast<double>(view.clipFromView[1][1]));
+        job.pixels = static_cast<double>(part.width) / distance * perRadian;
+        // The ground is always there, the model's middle is where its map is made.
+        const double off =
+            std::max(glm::length(own - glm::dvec3(0, 0, model.reflectionCentre * model.height)), job.radius);
+        const double narrow = 0.5 * static_cast<double>(part.width);
+        job.reach = std::max(options.closeRadii * narrow + job.radius - narrow, mapRadii * off);
+        double nearest = std::max(origin.z - pose.position.z, job.radius);
+        for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
+            const vehicles::VehiclePose& other = scene.vehicles[i];
+            if (i == index || other.model >= models.size()) continue;
+            const double apart = distanceTo(other, models[other.model], origin);
+            if (apart >= job.reach) continue;
+            job.close.push_back(i);
+            nearest = std::min(nearest, std::max(apart, job.radius));
+        }
+        if (nearest >= job.reach) {
+            ++plan.nothingClose;
+            return;
+        }
+        const double shift = job.pixels * off / (std::numbers::pi * nearest);
+        const double share = rise(job.pixels, options.leastPixels) * rise(shift, options.shift);
+        if (!(share > 0)) {
+            ++plan.tooSmall;
+            return;
+        }
+        job.share = static_cast<float>(share);
+        plan.jobs.push_back(std::move(job));
+    };
+    for (std::uint32_t v = 0; v < scene.views.size(); ++v)
+        for (const std::uint32_t index : seen) {
+            if (index >= scene.vehicles.size()) continue;
+            const std::uint32_t model = scene.vehicles[index].model;
+            if (model >= models.size()) continue;
+            const std::span<const ChromePart> own = parts.of(model);
+            for (std::uint32_t p = 0; p < own.size(); ++p) {
+                if (!own[p].onWheel) add(v, index, p, ChromeJob::noWheel);
+                for (std::uint32_t w = 0; own[p].onWheel && w < models[model].wheels.size(); ++w)
+                    add(v, index, p, w);
+            }
+        }
+    std::stable_sort(plan.jobs.begin(), plan.jobs.end(),
+                     [](const ChromeJob& a, const ChromeJob& b) { return a.pixels > b.pixels; });
+    if (plan.jobs.size() > options.mostJobs) {
+        // What is barely larger than the first that has no room is barely seen: places change unnoticed.
+        const double limit = plan.jobs[options.mostJobs].pixels;
+        plan.leftOut = static_cast<std::uint32_t>(plan.jobs.size() - options.mostJobs);
+        plan.jobs.resize(options.mostJobs);
+        constexpr double lead = 0.25;
+        for (ChromeJob& job : plan.jobs)
+            job.share *= static_cast<float>(std::clamp((job.pixels / limit - 1) / lead, 0.0, 1.0));
+        std::erase_if(plan.jobs, [&](const ChromeJob& job) {
+            const bool none = !(job.share > 0);
+            plan.leftOut += none;
+            return none;
+        });
+    }
+    return plan;
+}
+
+}  // namespace app

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "app/frame/ChromeParts.h"
+#include "app/frame/FrameScene.h"
+#include "reflection/planar/EyeView.h"
+
+namespace app {
+
+/// A piece of chrome that shows what is close to it where it truly appears, in one view.
+struct ChromeJob {
+    static constexpr std::uint32_t noWheel = 0xffffffffu;
+
+    std::uint32_t view = 0;     ///< index into FrameScene::views
+    std::uint32_t vehicle = 0;  ///< index into FrameScene::vehicles
+    std::uint32_t part = 0;     ///< of ChromeParts::of its model
+    std::uint32_t wheel = noWheel;
+    glm::dmat4 worldFromPart{1};  ///< rigid: the reflector's frame
+    double radius = 0;            ///< of the ball around the part's origin
+    double reach = 0;             ///< metres from its origin beyond which the local map shows everything
+    double pixels = 0;            ///< its width on screen
+    float share =
+        1;  ///< of the close picture over the local map's: 0 where a job begins, 1 from twice its size
+    std::vector<std::uint32_t> close;  ///< other vehicles within reach
+};
+
+/// The close chrome of one frame: plain data, made without a GPU. Without chrome that is large on screen it
+/// is empty, and nothing is made for it.
+struct ChromePlan {
+    std::vector<ChromeJob> jobs;     ///< the most visible first
+    std::uint32_t parts = 0;         ///< chrome parts of the vehicles seen, in all views
+    std::uint32_t outOfSight = 0;    ///< of these: outside the view, or on the far side of their vehicle
+    std::uint32_t tooSmall = 0;      ///< the local map is right to a pixel
+    std::uint32_t nothingClose = 0;  ///< nothing within reach
+    std::uint32_t leftOut = 0;       ///< for want of room
+
+    bool empty() const { return jobs.empty(); }
+};
+
+struct ChromePlanOptions {
+    bool on = true;
+    std::uint32_t mostJobs = 8;  ///< a frame; the least visible are left out
+    /// Things farther away than so many radii of a part are left to the map: seen from all over the part
+    /// their direction differs by less than one part in so many.
+    double closeRadii = 12;
+    /// Width on screen, pixels, from which on a part shows what its surroundings are and not only their
+    /// light.
+    double leastPixels = 12;
+    /// Pixels by which the local map may show close things off their places. It is made around the middle of
+    /// its vehicle: a feature at distance d seen from a part that lies s off that middle turns by about s /
+    /// d, and a part that shows the half space over D pixels shifts it by D s / (pi d).
+    double shift = 1;
+};
+
+/// Decides which chrome parts show close things themselves. Keeps nothing from frame to frame: a job's share
+/// grows from 0 with the part's size and nearness, and with its lead over the largest one that was left out,
+/// so that nothing jumps when a job begins or ends.
+///
+/// `seen`: indices into FrameScene::vehicles. `models`: those of the vehicles, in the order of the parts.
+/// Deterministic. Cost: the parts of the vehicles seen, and all vehicles for each job.
+ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> seen,
+                      std::span<const vehicles::VehicleModel> models, const ChromeParts& parts,
+                      const ChromePlanOptions& options);
+
+/// The pixels of an image of this size in which a ball may be seen, relative to the eye; all where the eye is
+/// close to it, none where it is behind or outside.
+reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,
+                                   const glm::vec3& centre, float radius);
+
+}  // namespace app

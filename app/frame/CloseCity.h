@@ -1,0 +1,37 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "city/model/CityModel.h"
+
+namespace app {
+
+/// What stands close to a place, cut off at a box around it.
+struct CloseCityPatch {
+    /// Around `place`, axes of the world, of meshes with at most `CloseCity::mostTriangles` each.
+    std::vector<city::Mesh> solid, cutout;  ///< opaque; with holes where their pattern is transparent
+    glm::dvec3 place{0};
+    double reach = 0;  ///< half the box's side, metres
+    std::size_t triangles() const;
+};
+
+/// Finds the standing city's triangles near a place: ground, kerbs, walls, and the things placed on them.
+class CloseCity {
+  public:
+    static constexpr std::size_t mostTriangles = 1024;
+
+    /// Keeps a reference. Cost: the bounds of chunks and placements.
+    explicit CloseCity(const city::CityModel& city);
+
+    /// Everything within a box of half side `reach` (metres, > 0), polygons cut off at it. Placed things at
+    /// the coarsest level that is off by no more than `share` of their distance from the place. Cost: linear
+    /// in the triangles of the chunks that the box touches.
+    CloseCityPatch gather(const glm::dvec3& place, double reach, double share) const;
+
+  private:
+    const city::CityModel& city_;
+    std::vector<city::Aabb> placements_;  ///< world bounds
+};
+
+}  // namespace app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "app/frame/ChromeParts.h"
+#include "app/frame/CloseCity.h"
+#include "city/model/CityModel.h"
+#include "vehicles/models/VehicleModel.h"
+
+namespace app {
+
+/// What chrome may show of close things, and the chrome itself: made once for a city and its vehicles.
+struct CloseScene {
+    /// Keeps references to both.
+    CloseScene(const city::CityModel& city, std::span<const vehicles::VehicleModel> vehicleModels)
+        : models(vehicleModels), parts(vehicleModels), standing(city) {}
+
+    std::span<const vehicles::VehicleModel> models;
+    ChromeParts parts;
+    CloseCity standing;
+};
+
+}  // namespace app

@@ -1,0 +1,261 @@
+// Which chrome shows close things itself, and the reflectors that it is made of.
+#include "app/frame/ChromePlan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "app/frame/StandingReflectors.h"
+#include "city/model/CityModel.h"
+
+namespace app {
+namespace {
+
+/// A chrome sphere of a metre in radius that rests on the origin, and a box of paint with a chrome button.
+struct World {
+    city::CityModel city;
+    std::vector<vehicles::VehicleModel> models;
+    ChromeParts parts;
+    FrameScene scene;
+    std::vector<std::uint32_t> seen;
+
+    explicit World(double eyeDistance, int cars = 1) {
+        city.reflectors.push_back({"sphere", city::StandingReflector::Shape::sphere,
+                                   city::StandingReflector::Stuff::chrome, glm::vec3(0), 1, 2});
+        vehicles::VehicleModel car;
+        car.length = 4;
+        car.width = 2;
+        car.height = 1.5f;
+        car.levels.emplace_back().body = button({2, 0, 0.7f});
+        models = {car, standingModels(city).front()};
+        parts = ChromeParts(models);
+        scene.vehicles = standingPoses(city, 1);
+        for (int i = 0; i < cars; ++i) {
+            vehicles::VehiclePose& pose = scene.vehicles.emplace_back();
+            pose.id = static_cast<std::uint32_t>(i);
+            pose.position = {0, 2.5 + 3 * i, 0};
+        }
+        for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) seen.push_back(i);
+        lookFrom(eyeDistance);
+    }
+
+    void lookFrom(double distance) { scene.views = {lookAt({distance, 0, 1}, {0, 0, 1}, 1, {1280, 720})}; }
+    ChromePlan plan(const ChromePlanOptions& options = {}) const {
+        return planChrome(scene, seen, models, parts, options);
+    }
+
+    /// Half a ball of 10 cm, its back open, towards +x.
+    static city::Mesh button(const glm::vec3& centre) {
+        city::Mesh mesh;
+        constexpr int n = 12;
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; j < 2 * n; ++j) {
+                const double a = 1.4 * i / n, b = M_PI * j / n;
+                const glm::vec3 d(std::cos(a), std::sin(a) * std::cos(b), std::sin(a) * std::sin(b));
+                mesh.vertices.push_back(
+                    {centre + 0.1f * d, d, {}, static_cast<std::uint32_t>(vehicles::Surface::chrome)});
+            }
+        const auto at = [](int i, int j) { return static_cast<std::uint32_t>(i * 2 * n + j % (2 * n)); };
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < 2 * n; ++j)
+                mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
+                                                         at(i + 1, j + 1), at(i, j + 1)});
+        return mesh;
+    }
+};
+
+TEST(ChromePlan, NoChromeOrNoneSeenMeansNoJobs) {
+    World world(5);
+    EXPECT_EQ(world.plan().jobs.size(), 2u);
+    ChromePlanOptions off;
+    off.on = false;
+    EXPECT_TRUE(world.plan(off).empty());
+    world.seen.clear();
+    const ChromePlan unseen = world.plan();
+    EXPECT_TRUE(unseen.empty());
+    EXPECT_EQ(unseen.parts, 0u);
+    World plain(4);
+    for (vehicles::VehicleModel& model : plain.models)
+        for (vehicles::VehicleModel::Level& level : model.levels)
+            for (city::Vertex& v : level.body.vertices) v.material = 0;
+    plain.parts = ChromeParts(plain.models);
+    EXPECT_TRUE(plain.parts.empty());
+    EXPECT_TRUE(plain.plan().empty());
+    EXPECT_EQ(plain.parts.reflectorsMade(), 0u);
+}
+
+TEST(ChromePlan, PartsThatAreSmallOrOutOfSightHaveNone) {
+    World world(4);
+    world.lookFrom(300);
+    ChromePlan plan = world.plan();
+    EXPECT_TRUE(plan.empty());
+    EXPECT_EQ(plan.tooSmall, 2u);
+    // From behind, the button is on the car's far side, and the sphere's job alone is left.
+    world.lookFrom(-4);
+    plan = world.plan();
+    ASSERT_EQ(plan.jobs.size(), 1u);
+    EXPECT_EQ(plan.jobs[0].vehicle, 0u);
+    EXPECT_EQ(plan.outOfSight, 1u);
+    // Away from both.
+    world.scene.views = {lookAt({4, 0, 1}, {8, 0, 1}, 1, {1280, 720})};
+    EXPECT_TRUE(world.plan().empty());
+}
+
+TEST(ChromePlan, NothingWithinReachMeansNoJob) {
+    // A ball that hovers: the ground is as far as its foot, and it has no other neighbour.
+    for (const double height : {0.0, 30.0}) {
+        World world(4, 0);
+        for (city::Vertex& v : world.models[1].levels.front().body.vertices)
+            v.position.z += static_cast<float>(height);
+        world.models[1].reflectionCentre += 0.5f * static_cast<float>(height);
+        world.parts = ChromeParts(world.models);
+        world.scene.views = {lookAt({4, 0, 1 + height}, {0, 0, 1 + height}, 1, {1280, 720})};
+        const ChromePlan plan = world.plan();
+        EXPECT_EQ(plan.jobs.size(), height > 0 ? 0u : 1u);
+        EXPECT_EQ(plan.nothingClose, height > 0 ? 1u : 0u);
+    }
+}
+
+TEST(ChromePlan, NamesTheCloseVehiclesAndNotItself) {
+    const World world(4, 8);
+    const ChromePlan plan = world.plan();
+    for (const ChromeJob& job : plan.jobs) {
+        for (const std::uint32_t index : job.close) {
+            EXPECT_NE(index, job.vehicle);
+            EXPECT_LT(glm::length(world.scene.vehicles[index].position - glm::dvec3(job.worldFromPart[3])),
+                      job.reach + 3);
+        }
+        if (job.vehicle == 0) {
+            EXPECT_GE(job.close.size(), 3u);
+        }
+    }
+}
+
+TEST(ChromePlan, TheLeastVisibleAreLeftOut) {
+    const World world(5, 1);
+    const ChromePlan all = world.plan();
+    ASSERT_EQ(all.jobs.size(), 2u);
+    ChromePlanOptions one;
+    one.mostJobs = 1;
+    const ChromePlan capped = world.plan(one);
+    ASSERT_EQ(capped.jobs.size(), 1u);
+    EXPECT_EQ(capped.jobs.size() + capped.leftOut, all.jobs.size());
+    EXPECT_EQ(capped.jobs[0].vehicle, all.jobs[0].vehicle);
+    for (std::size_t i = 1; i < all.jobs.size(); ++i) EXPECT_GE(all.jobs[i - 1].pixels, all.jobs[i].pixels);
+}
+
+TEST(ChromePlan, SharesGrowFromNothingWithoutAJumpAsTheEyeComesNear) {
+    for (const std::uint32_t most : {8u, 1u}) {
+        World world(1, 5);
+        ChromePlanOptions options;
+        options.mostJobs = most;
+        std::vector<float> before(world.scene.vehicles.size(), 0);
+        float largest = 0, step = 0;
+        for (double distance = 200; distance > 2.5; distance *= 0.998) {
+            world.lookFrom(distance);
+            std::vector<float> now(before.size(), 0);
+            for (const ChromeJob& job : world.plan(options).jobs) now[job.vehicle] = job.share;
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                // Out of the picture a part may have any share.
+                const glm::dvec3 towards = world.scene.vehicles[i].position - world.scene.views[0].eye;
+                if (std::abs(towards.y) < 0.3 * std::abs(towards.x))
+                    step = std::max(step, std::abs(now[i] - before[i]));
+                largest = std::max(largest, now[i]);
+            }
+            before = now;
+        }
+        EXPECT_EQ(largest, 1);
+        EXPECT_LT(step, 0.05f);
+    }
+}
+
+TEST(ChromePlan, EveryViewHasItsOwnJobs) {
+    World world(5);
+    world.scene.views.push_back(lookAt({-4, 0, 1}, {0, 0, 1}, 1, {1280, 720}));
+    const ChromePlan plan = world.plan();
+    EXPECT_EQ(plan.parts, 4u);
+    std::size_t ofView[2] = {0, 0};
+    for (const ChromeJob& job : plan.jobs) ++ofView[job.view];
+    EXPECT_EQ(ofView[0], 2u);
+    EXPECT_EQ(ofView[1], 1u);
+}
+
+TEST(ChromePlan, BallsLieWithinTheirPixels) {
+    const View view = lookAt({0, 0, 0}, {1, 0, 0}, 1, {640, 480});
+    const glm::mat4 clip = view.clipFromView * view.viewFromWorld;
+    const reflection::PixelRect all{glm::ivec2(0), view.size};
+    EXPECT_EQ(pixelsOfBall(clip, view.size, glm::vec3(0.5f, 0, 0), 1), all);
+    EXPECT_TRUE(pixelsOfBall(clip, view.size, glm::vec3(-5, 0, 0), 1).empty());
+    EXPECT_TRUE(pixelsOfBall(clip, view.size, glm::vec3(5, 30, 0), 1).empty());
+    const reflection::PixelRect pixels = pixelsOfBall(clip, view.size, glm::vec3(5, 0.5f, -0.3f), 0.5f);
+    for (int i = 0; i < 200; ++i) {
+        const float a = 0.1f * static_cast<float>(i), b = 0.037f * static_cast<float>(i);
+        const glm::vec3 on =
+            glm::vec3(5, 0.5f, -0.3f) +
+            0.5f * glm::vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+        const glm::vec4 c = clip * glm::vec4(on, 1);
+        const glm::vec2 p = (glm::vec2(c) / c.w * 0.5f + 0.5f) * glm::vec2(view.size);
+        EXPECT_TRUE(p.x >= static_cast<float>(pixels.low.x) && p.x <= static_cast<float>(pixels.high.x));
+        EXPECT_TRUE(p.y >= static_cast<float>(pixels.low.y) && p.y <= static_cast<float>(pixels.high.y));
+    }
+    EXPECT_LT(pixels.area(), all.area() / 8);
+}
+
+TEST(ChromeParts, WhatDiffersInItsPlaceAloneIsMadeOnce) {
+    vehicles::VehicleModel one, two;
+    one.levels.emplace_back().body = World::button({2, 0.3f, 0.7f});
+    one.levels.front().body.append(World::button({2, -0.3f, 0.7f}));
+    two.levels.emplace_back().body = World::button({-1, 0, 12.345f});
+    two.wheel = World::button({0, 0, 0});
+    two.wheels.resize(4);
+    const std::vector<vehicles::VehicleModel> models{one, two};
+    const ChromeParts parts(models);
+    ASSERT_EQ(parts.of(0).size(), 2u);
+    ASSERT_EQ(parts.of(1).size(), 2u);
+    EXPECT_EQ(parts.shapes(), 1u);
+    EXPECT_EQ(parts.reflectorsMade(), 0u);
+    EXPECT_EQ(&parts.reflectorOf(parts.of(0)[0]), &parts.reflectorOf(parts.of(1)[1]));
+    EXPECT_EQ(parts.reflectorsMade(), 1u);
+    EXPECT_GT(parts.bytes(), 0u);
+    EXPECT_TRUE(parts.of(2).empty());
+    EXPECT_NE(parts.of(1)[0].onWheel, parts.of(1)[1].onWheel);
+    // A part that is bent otherwise is another.
+    std::vector<vehicles::VehicleModel> bent = models;
+    bent[0].levels[0].body.vertices[5].position.x += 0.01f;
+    EXPECT_EQ(ChromeParts(bent).shapes(), 2u);
+}
+
+TEST(ChromeParts, CreasesAndPaintPartAndBrokenTrianglesAreLeftOut) {
+    constexpr auto chrome = static_cast<std::uint32_t>(vehicles::Surface::chrome);
+    city::Mesh mesh;
+    const auto quad = [&](glm::vec3 o, glm::vec3 u, glm::vec3 v, std::uint32_t material) {
+        const glm::vec3 n = glm::normalize(glm::cross(u, v));
+        mesh.addQuad({o, n, {}, material}, {o + u, n, {}, material}, {o + u + v, n, {}, material},
+                     {o + v, n, {}, material});
+    };
+    quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, chrome);
+    quad({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, chrome);   // goes on flat
+    quad({2, 0, 0}, {0, 0, -1}, {0, 1, 0}, chrome);  // round a sharp edge
+    quad({0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 0);
+    EXPECT_EQ(chromeComponents(mesh).size(), 2u);
+    EXPECT_EQ(chromeComponents(mesh)[0].triangleCount(), 4u);
+    // Three triangles at an edge, one with a corner that is nowhere, one with an index that is.
+    quad({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, chrome);
+    const float nowhere = std::numeric_limits<float>::quiet_NaN();
+    mesh.addTriangle({{nowhere, 0, 0}, {0, 0, 1}, {}, chrome}, {{0, 0, 0}, {0, 0, 1}, {}, chrome},
+                     {{1, 0, 0}, {0, 0, 1}, {}, chrome});
+    mesh.indices.insert(mesh.indices.end(), {0, 1, 1000});
+    vehicles::VehicleModel model;
+    model.levels.emplace_back().body = mesh;
+    const ChromeParts parts(std::span(&model, 1));
+    std::size_t pieces = 0;
+    for (const ChromePart& part : parts.of(0)) {
+        EXPECT_TRUE(std::isfinite(part.radius) && std::isfinite(part.width));
+        pieces += parts.reflectorOf(part).pieces.size();
+    }
+    EXPECT_GE(pieces, 3u);
+}
+
+}  // namespace
+}  // namespace app
