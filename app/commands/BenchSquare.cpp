@@ -8,6 +8,7 @@
 #include "app/commands/MirrorMask.h"
 #include "app/commands/PreparedScene.h"
 #include "app/commands/ReflectionSource.h"
+#include "app/commands/SquareChrome.h"
 #include "app/commands/SquareShots.h"
 #include "app/commands/StoneBench.h"
 #include "app/commands/Version.h"
@@ -121,6 +122,8 @@ class Errors {
             table.push_back({file, std::to_string(pixels), fixed(psnr, 1), fixed(flip, 4), "", "", "", ""});
         }
     }
+
+    const CloseScene& close() const { return close_; }
 
   private:
     std::vector<unsigned char> pixelsOf(const SquareShot& shot) const {
@@ -249,11 +252,14 @@ int benchSquare(const Options& options) {
             if (interrupted()) break;
             errors.measure(shot, frame, results, table);
             if (!shot.reflector || !shot.name.ends_with("near")) continue;
-            SquareShot beside = shot;
-            beside.name = scene.city.reflectors[*shot.reflector].name + " beside a car";
+            SquareShot parkedBy = shot;
+            parkedBy.name = scene.city.reflectors[*shot.reflector].name + " beside a car";
             FrameScene parked = frame;
             parkBeside(parked, scene, *shot.reflector, 0.5);
-            errors.measure(beside, parked, results, table);
+            errors.measure(parkedBy, parked, results, table);
+            if (scene.city.reflectors[*shot.reflector].stuff == city::StandingReflector::Stuff::chrome &&
+                !interrupted())
+                measureChromeCost(options, stage, errors.close(), parkedBy, parked, results, table);
         }
     }
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace app {
 
@@ -36,6 +37,24 @@ bool same(const city::Mesh& a, const city::Mesh& b) {
             return false;
     }
     return true;
+}
+
+/// Whether every edge has two triangles that face the same way, corners joined by position.
+bool closed(const city::Mesh& mesh) {
+    std::map<std::tuple<float, float, float>, std::uint32_t> places;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    const auto corner = [&](std::uint32_t i) {
+        const glm::vec3& p = mesh.vertices[i].position;
+        return places.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(places.size())).first->second;
+    };
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t a = corner(mesh.indices[k + c]), b = corner(mesh.indices[k + (c + 1) % 3]);
+            if (a == b) continue;
+            edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+            if (std::abs(edges[{std::min(a, b), std::max(a, b)}]) > 1) return false;
+        }
+    return !edges.empty() && std::ranges::all_of(edges, [](const auto& edge) { return edge.second == 0; });
 }
 
 float areaOf(const city::Mesh& mesh) {
@@ -129,6 +148,7 @@ ChromeParts::ChromeParts(std::span<const vehicles::VehicleModel> models) {
                     part.radius = std::max(part.radius, glm::length(v.position));
                 }
                 if (part.radius < leastRadius) continue;
+                part.closed = closed(component);
                 part.width = areaOf(component) / (2 * std::numbers::pi_v<float> * part.radius);
                 const auto known = std::ranges::find_if(
                     shapes_, [&](const auto& shape) { return same(shape->mesh, component); });

@@ -18,6 +18,7 @@ struct ChromePart {
     float radius = 0;         ///< of the ball around `centre` that holds it
     /// Of a sphere of as much surface per radius: strips are narrow, however long, metres.
     float width = 0;
+    bool closed = false;   ///< a whole body: every edge has two triangles
     bool onWheel = false;  ///< it is there on every wheel, and turns with it
 };
 

@@ -98,6 +98,10 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         const vehicles::VehiclePose& pose = scene.vehicles[index];
         const vehicles::VehicleModel& model = models[pose.model];
         const ChromePart& part = parts.of(pose.model)[p];
+        if (!part.closed && !options.openParts) {
+            ++plan.open;
+            return;
+        }
         glm::dmat3 turn(worldFromVehicle(pose));
         glm::dvec3 own(part.centre);
         glm::dmat3 vehicleFromPart(1);
@@ -125,12 +129,13 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         const double distance = std::max(glm::length(towards), job.radius);
         const double perRadian = 0.5 * view.size.y * std::abs(static_cast<double>(view.clipFromView[1][1]));
         job.pixels = static_cast<double>(part.width) / distance * perRadian;
-        // The ground is always there, the model's middle is where its map is made.
+        // The map is made around the model's middle. What stands has the ground below it, a vehicle's part
+        // its own vehicle, which the map does not show.
         const double off =
             std::max(glm::length(own - glm::dvec3(0, 0, model.reflectionCentre * model.height)), job.radius);
         const double narrow = 0.5 * static_cast<double>(part.width);
         job.reach = std::max(options.closeRadii * narrow + job.radius - narrow, mapRadii * off);
-        double nearest = std::max(origin.z - pose.position.z, job.radius);
+        double nearest = stands(pose) ? std::max(origin.z - pose.position.z, job.radius) : job.radius;
         for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
             const vehicles::VehiclePose& other = scene.vehicles[i];
             if (i == index || other.model >= models.size()) continue;
@@ -155,6 +160,7 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
     for (std::uint32_t v = 0; v < scene.views.size(); ++v)
         for (const std::uint32_t index : seen) {
             if (index >= scene.vehicles.size()) continue;
+            if (!options.vehicles && !stands(scene.vehicles[index])) continue;
             const std::uint32_t model = scene.vehicles[index].model;
             if (model >= models.size()) continue;
             const std::span<const ChromePart> own = parts.of(model);

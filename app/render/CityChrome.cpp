@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "app/frame/StandingReflectors.h"
 #include "app/frame/VehicleShading.h"
 #include "app/render/CloseMeshes.h"
 #include "app/render/NodeView.h"
@@ -35,6 +36,9 @@ constexpr std::uint64_t framesKept = 30;
 constexpr double patchLasts = 0.2;
 /// Placed things may be off by this share of their distance from the part.
 constexpr double placedDetail = 0.01;
+
+/// Names of what is near a part, beside vehicles' ids and one: 0 is the city, this its own vehicle.
+constexpr std::uint64_t ownThing = ~std::uint64_t{0};
 
 enum class Drawing : std::uint8_t { solid, cutout, plain, map, parallax, count };
 
@@ -199,6 +203,14 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
     ++my.frame;
     ChromeCounts counts;
 
+    const auto drawingOf = [&](std::uint32_t vehicle) {
+        if (around.textures == nullptr || vehicle >= around.slots.size() || !around.slots[vehicle].valid())
+            return Drawing::plain;
+        const auto sizeClass = static_cast<std::size_t>(around.slots[vehicle].sizeClass);
+        return around.textures->nearnessArrays[sizeClass] != 0 ? Drawing::parallax
+               : around.textures->cubeArrays[sizeClass] != 0   ? Drawing::map
+                                                               : Drawing::plain;
+    };
     struct Drawn {
         const ChromeJob* job;
         const reflection::ReflectorPiece* piece;
@@ -249,18 +261,19 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
                     glm::length(pose.position - glm::dvec3(job.worldFromPart[3])) - job.radius, job.radius);
                 const double allowed = options.detail * distance / static_cast<double>(pass.pixelsPerRadian) *
                                        (1 + 2 * away / job.radius);
-                Drawing drawing = Drawing::plain;
-                if (around.textures != nullptr && index < around.slots.size() &&
-                    around.slots[index].valid()) {
-                    const auto sizeClass = static_cast<std::size_t>(around.slots[index].sizeClass);
-                    drawing = around.textures->nearnessArrays[sizeClass] != 0 ? Drawing::parallax
-                              : around.textures->cubeArrays[sizeClass] != 0   ? Drawing::map
-                                                                              : Drawing::plain;
-                }
                 std::uint32_t number = 0;
                 for (const CloseVehicles::Placed& placed : my.vehicles.of(pose, static_cast<float>(allowed)))
                     add(my.object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, options),
-                        placed.worldFromMesh, drawing, index);
+                        placed.worldFromMesh, drawingOf(index), index);
+            }
+            if (!stands(own)) {
+                std::uint32_t number = 0;
+                const double allowed = options.detail * distance / static_cast<double>(pass.pixelsPerRadian);
+                for (const CloseVehicles::Placed& placed :
+                     my.vehicles.ownOf(own, part, job.part, job.wheel, static_cast<float>(job.reach),
+                                       static_cast<float>(allowed)))
+                    add(my.object(kept, p, ownThing, number++, *placed.mesh, options), placed.worldFromMesh,
+                        drawingOf(job.vehicle), job.vehicle);
             }
             drawn.push_back({&job, &piece, first, tasks.size()});
         }

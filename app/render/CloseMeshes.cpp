@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "app/frame/VehicleShading.h"
@@ -13,6 +14,27 @@ namespace {
 glm::dmat4 placed(const glm::mat3& turn, const glm::dvec3& origin) {
     return glm::dmat4(glm::dvec4(turn[0], 0), glm::dvec4(turn[1], 0), glm::dvec4(turn[2], 0),
                       glm::dvec4(origin, 1));
+}
+
+/// The vertices that the indices name, and no others.
+std::unique_ptr<CloseMesh> meshFrom(const city::Mesh& mesh, const std::vector<std::uint32_t>& indices) {
+    auto made = std::make_unique<CloseMesh>();
+    made->attributes = {3, 3, 1};
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    constexpr auto last = static_cast<std::uint32_t>(vehicles::Surface::count) - 1;
+    std::vector<std::uint32_t> place(mesh.vertices.size(), none);
+    for (const std::uint32_t index : indices) {
+        if (place[index] == none) {
+            place[index] = static_cast<std::uint32_t>(made->positions.size());
+            const city::Vertex& v = mesh.vertices[index];
+            made->positions.push_back(v.position);
+            made->values.insert(made->values.end(),
+                                {v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z,
+                                 static_cast<float>(std::min(v.material, last))});
+        }
+        made->indices.push_back(place[index]);
+    }
+    return made;
 }
 
 }  // namespace
@@ -45,24 +67,53 @@ const VehicleLevels& CloseVehicles::levelsOf(std::size_t model) {
 
 const CloseMesh& CloseVehicles::meshOf(const VehicleLevels::Level& level) {
     std::unique_ptr<CloseMesh>& made = meshes_[&level];
-    if (made) return *made;
-    made = std::make_unique<CloseMesh>();
-    made->attributes = {3, 3, 1};
-    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    constexpr auto last = static_cast<std::uint32_t>(vehicles::Surface::count) - 1;
-    std::vector<std::uint32_t> place(level.vertices->vertices.size(), none);
-    for (const std::uint32_t index : level.indices) {
-        if (place[index] == none) {
-            place[index] = static_cast<std::uint32_t>(made->positions.size());
-            const city::Vertex& v = level.vertices->vertices[index];
-            made->positions.push_back(v.position);
-            made->values.insert(made->values.end(),
-                                {v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z,
-                                 static_cast<float>(std::min(v.material, last))});
-        }
-        made->indices.push_back(place[index]);
-    }
+    if (!made) made = meshFrom(*level.vertices, level.indices);
     return *made;
+}
+
+const CloseMesh& CloseVehicles::around(const VehicleLevels::Level& level, const ChromePart& part,
+                                       std::uint32_t index, float reach) {
+    std::unique_ptr<CloseMesh>& made = arounds_[{&level, index}];
+    if (made) return *made;
+    constexpr auto chrome = static_cast<std::uint32_t>(vehicles::Surface::chrome);
+    const auto away = [&](std::uint32_t i) {
+        return glm::length(level.vertices->vertices[i].position - part.centre);
+    };
+    std::vector<std::uint32_t> kept;
+    for (std::size_t k = 0; k + 2 < level.indices.size(); k += 3) {
+        const std::uint32_t* t = &level.indices[k];
+        const float nearest = std::min({away(t[0]), away(t[1]), away(t[2])});
+        const float farthest = std::max({away(t[0]), away(t[1]), away(t[2])});
+        // Coarser levels are off by their error.
+        const bool itself = level.vertices->vertices[t[0]].material == chrome &&
+                            farthest <= 1.01f * part.radius + level.error;
+        if (nearest < reach && !itself) kept.insert(kept.end(), t, t + 3);
+    }
+    made = meshFrom(*level.vertices, kept);
+    return *made;
+}
+
+std::span<const CloseVehicles::Placed> CloseVehicles::ownOf(const vehicles::VehiclePose& pose,
+                                                            const ChromePart& part, std::uint32_t index,
+                                                            std::uint32_t wheel, float reach, float allowed) {
+    placed_.clear();
+    if (pose.model >= models_.size()) return placed_;
+    const VehicleLevels& levels = levelsOf(pose.model);
+    const glm::mat3 turn = worldFromVehicle(pose);
+    const auto add = [&](const CloseMesh& mesh, const glm::dmat4& worldFromMesh) {
+        if (!mesh.indices.empty()) placed_.push_back({&mesh, worldFromMesh});
+    };
+    if (part.onWheel) {
+        if (levels.wheels.empty() || wheel >= levels.places.size()) return placed_;
+        const vehicles::VehicleModel::Wheel& at = levels.places[wheel];
+        add(around(levels.wheels[VehicleLevels::choose(levels.wheels, allowed)], part, index, reach),
+            placed(turn * vehicleFromWheel(at, pose), pose.position + glm::dvec3(turn * at.centre)));
+        return placed_;
+    }
+    if (levels.bodies.empty()) return placed_;
+    add(around(levels.bodies[VehicleLevels::choose(levels.bodies, allowed)], part, index, reach),
+        placed(turn, pose.position));
+    return placed_;
 }
 
 std::span<const CloseVehicles::Placed> CloseVehicles::of(const vehicles::VehiclePose& pose, float allowed) {

@@ -41,7 +41,8 @@ struct World {
     }
 
     void lookFrom(double distance) { scene.views = {lookAt({distance, 0, 1}, {0, 0, 1}, 1, {1280, 720})}; }
-    ChromePlan plan(const ChromePlanOptions& options = {}) const {
+    ChromePlan plan(ChromePlanOptions options = {}) const {
+        options.vehicles = options.openParts = true;
         return planChrome(scene, seen, models, parts, options);
     }
 
@@ -115,6 +116,19 @@ TEST(ChromePlan, NothingWithinReachMeansNoJob) {
         EXPECT_EQ(plan.jobs.size(), height > 0 ? 0u : 1u);
         EXPECT_EQ(plan.nothingClose, height > 0 ? 1u : 0u);
     }
+}
+
+TEST(ChromePlan, PartsOfVehiclesAndOnesWithARimAreAskedForApart) {
+    const World world(5);
+    const ChromePlan standing = planChrome(world.scene, world.seen, world.models, world.parts, {});
+    ASSERT_EQ(standing.jobs.size(), 1u);
+    EXPECT_EQ(standing.jobs[0].vehicle, 0u);
+    EXPECT_EQ(standing.parts, 1u);
+    ChromePlanOptions closed;
+    closed.vehicles = true;
+    const ChromePlan all = planChrome(world.scene, world.seen, world.models, world.parts, closed);
+    EXPECT_EQ(all.jobs.size(), 1u);
+    EXPECT_EQ(all.open, 1u);
 }
 
 TEST(ChromePlan, NamesTheCloseVehiclesAndNotItself) {
