@@ -124,7 +124,7 @@ std::vector<city::Mesh> chromeComponents(const city::Mesh& mesh) {
 }
 
 struct ChromeParts::Shape {
-    city::Mesh mesh;
+    city::Mesh mesh, companion;
     std::once_flag once;
     std::atomic<bool> made{false};
     reflection::Reflector reflector;
@@ -165,10 +165,23 @@ ChromeParts::ChromeParts(std::span<const vehicles::VehicleModel> models) {
     }
 }
 
+void ChromeParts::giveCompanion(std::size_t model, city::Mesh companion) {
+    if (model >= models_.size() || models_[model].empty() || companion.empty()) return;
+    ChromePart& part = models_[model].front();
+    for (city::Vertex& v : companion.vertices) v.position -= part.centre;
+    part.closed = true;
+    shapes_[part.shape]->companion = std::move(companion);
+}
+
 const reflection::Reflector& ChromeParts::reflectorOf(const ChromePart& part) const {
     Shape& shape = *shapes_[part.shape];
     std::call_once(shape.once, [&] {
-        shape.reflector = reflection::makeReflector(shape.mesh);
+        shape.reflector = reflection::makeReflector(shape.companion.empty() ? shape.mesh : shape.companion);
+        // What the companion adds is for searches; the part's own pixels are what is seen.
+        if (!shape.companion.empty()) {
+            shape.reflector.pieces.resize(std::min<std::size_t>(shape.reflector.pieces.size(), 1));
+            for (reflection::ReflectorPiece& piece : shape.reflector.pieces) piece.mesh = shape.mesh;
+        }
         shape.made = true;
     });
     return shape.reflector;

@@ -35,6 +35,11 @@ class ChromeParts {
     ChromeParts(ChromeParts&&) noexcept;
     ChromeParts& operator=(ChromeParts&&) noexcept;
 
+    /// Gives a model's widest part a closed body of which it is a piece, smooth past the part's rim, in the
+    /// model's frame: searches walk on that, and the part's own pixels show what they find (Estalella et al.
+    /// 2005, section 6.2). Before reflectorOf is asked for the part.
+    void giveCompanion(std::size_t model, city::Mesh companion);
+
     /// Of a model, the widest first; nothing for one that is not known.
     std::span<const ChromePart> of(std::size_t model) const {
         return model < models_.size() ? std::span<const ChromePart>(models_[model])

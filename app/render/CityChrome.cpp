@@ -229,6 +229,8 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         const glm::dvec3 eye(partFromWorld * glm::dvec4(pass.eye, 1));
         reflection::VirtualMeshOptions virtualOptions;
         virtualOptions.vertices.share = options.share;
+        // The ground is cut off at the patch alone: its edges are as long as the patch.
+        virtualOptions.mostHalvings = 9;
         virtualOptions.tolerance = options.tolerance / static_cast<double>(pass.pixelsPerRadian);
         const double distance = glm::length(eye);
         if (distance > 1.1 * job.radius) {

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "app/frame/CloseScene.h"
 #include "app/frame/StandingReflectors.h"
 #include "city/model/CityModel.h"
+#include "reflection/chrome/ReflectionSearch.h"
 
 namespace app {
 namespace {
@@ -238,6 +240,34 @@ TEST(ChromeParts, WhatDiffersInItsPlaceAloneIsMadeOnce) {
     std::vector<vehicles::VehicleModel> bent = models;
     bent[0].levels[0].body.vertices[5].position.x += 0.01f;
     EXPECT_EQ(ChromeParts(bent).shapes(), 2u);
+}
+
+TEST(ChromeParts, APillarIsSearchedOnABodyThatIsClosed) {
+    city::CityModel city;
+    city.reflectors.push_back({"pillar", city::StandingReflector::Shape::pillar,
+                               city::StandingReflector::Stuff::chrome, glm::vec3(3, 4, 0), 0.5f, 4});
+    const std::vector<vehicles::VehicleModel> models = standingModels(city);
+    const ChromeParts alone(models);
+    EXPECT_FALSE(alone.of(0)[0].closed);
+    const CloseScene close(city, models);
+    const ChromePart& part = close.parts.of(0)[0];
+    EXPECT_TRUE(part.closed);
+    const reflection::Reflector& reflector = close.parts.reflectorOf(part);
+    ASSERT_EQ(reflector.pieces.size(), 1u);
+    // What is seen is the pillar's side, what is searched goes on past it, and is smooth.
+    const city::Aabb seen = reflector.pieces[0].mesh.bounds();
+    EXPECT_NEAR(seen.size().z, 4, 1e-4f);
+    const reflection::ReflectorMap& map = reflector.pieces[0].built.map;
+    EXPECT_EQ(reflector.pieces[0].built.report.coveredShare, 1);
+    for (const double z : {0.0, 1.9, 2.4}) {
+        const glm::dvec3 eye(5, 0, z), vertex(2, 3, z);
+        reflection::ReflectionPoint point;
+        reflection::findReflectionPoints(map, eye, {&vertex, 1}, {&point, 1});
+        EXPECT_EQ(point.status, reflection::ReflectionStatus::found);
+        EXPECT_NEAR(glm::length(glm::dvec2(point.point)), 0.5, 1e-3);
+        EXPECT_NEAR(point.point.z, z, 2e-3);
+    }
+    EXPECT_TRUE(roundedPillar({"none", {}, {}, {}, 0, 1}).empty());
 }
 
 TEST(ChromeParts, CreasesAndPaintPartAndBrokenTrianglesAreLeftOut) {
