@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
 namespace vehicles {
 
@@ -94,6 +95,10 @@ void addBumper(city::Mesh& parts, const Shell& half, const BumperShape& shape) {
         return glm::vec3(p.x, ghost ? -p.y : p.y, shape.z + shape.halfHeight * size * std::sin(angle));
     };
     const auto base = static_cast<std::uint32_t>(parts.vertices.size());
+    const auto add = [&](const glm::vec3& position, const glm::vec3& normal) {
+        parts.vertices.push_back(
+            {position, normal, glm::vec2(0), static_cast<std::uint32_t>(Surface::chrome)});
+    };
     for (int i = 0; i < stations; ++i)
         for (int j = 0; j < across; ++j) {
             const glm::vec3 along = at(std::min(i + 1, stations - 1), j) - at(i - 1, j);
@@ -101,17 +106,35 @@ void addBumper(city::Mesh& parts, const Shell& half, const BumperShape& shape) {
             glm::vec3 normal = glm::normalize(glm::cross(down, along));
             if (shape.rear) normal = -normal;
             if (i == 0) normal = glm::normalize(glm::vec3(normal.x, 0, normal.z));
-            parts.vertices.push_back(
-                {at(i, j), normal, glm::vec2(0), static_cast<std::uint32_t>(Surface::chrome)});
+            add(at(i, j), normal);
         }
+    const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        if (shape.rear) std::swap(b, c);
+        parts.indices.insert(parts.indices.end(), {a, b, c});
+    };
     for (std::uint32_t i = 0; i + 1 < stations; ++i)
         for (std::uint32_t j = 0; j + 1 < across; ++j) {
             const std::uint32_t a = base + i * across + j, b = a + across;
-            if (shape.rear)
-                parts.indices.insert(parts.indices.end(), {a, b, a + 1, b, b + 1, a + 1});
-            else
-                parts.indices.insert(parts.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+            triangle(a, a + 1, b);
+            triangle(b, a + 1, b + 1);
         }
+    // Closed behind, within the vehicle's body, by the section's own level tangents and a plane between its
+    // ends: with its other half a whole convex body.
+    const glm::vec3 end = at(stations - 1, across / 2);
+    const float back = shape.rear ? 1.0f : -1.0f;
+    for (const float side : {1.0f, -1.0f})
+        add({end.x, 0, shape.z + side * shape.halfHeight}, glm::normalize(glm::vec3(0.3f * back, 0, side)));
+    const std::uint32_t top = base + stations * across, bottom = top + 1;
+    for (std::uint32_t i = 0; i + 1 < stations; ++i) {
+        const std::uint32_t a = base + i * across, b = a + across;
+        triangle(top, a, b);
+        triangle(bottom, b + across - 1, a + across - 1);
+    }
+    const std::uint32_t last = base + (stations - 1) * across;
+    triangle(top, last, bottom);
+    triangle(bottom, last, last + across - 1);
+    // The end's own small face.
+    for (std::uint32_t j = 1; j + 1 < across; ++j) triangle(last, last + j, last + j + 1);
 }
 
 }  // namespace vehicles

@@ -15,9 +15,10 @@ struct BumperShape {
     bool rear = false;
 };
 
-/// Adds the left half of a chrome bumper bar: an elliptic section, open behind, swept along the shell's
-/// outline and rounded off at its end. Normals are those of the swept surface. Where the shell is missed
-/// nothing is added. Cost: the shell's triangles, once for each of some sixty directions.
+/// Adds the left half of a chrome bumper bar: an elliptic section swept along the shell's outline, rounded
+/// off at its end and closed behind within the body: with its mirror image a whole convex body, as searches
+/// for what it reflects want it (reflection/chrome). Normals are those of the swept surface. Where the shell
+/// is missed nothing is added. Cost: the shell's triangles, once for each of some sixty directions.
 void addBumper(city::Mesh& parts, const Shell& half, const BumperShape& shape);
 
 /// How far the shell's left half is met by a ray in the plane at height z: from (x, 0) in the direction of

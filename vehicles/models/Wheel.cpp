@@ -26,19 +26,25 @@ void addSpoke(city::Mesh& mesh, float angle, float inner, float outer, float hal
     addPlate(mesh, ir - depth * axle, ir, orr, orr - depth * axle, Surface::rim);
 }
 
-/// A pressed chrome disc: a dome in the middle, a round channel about it, a bead along the rim. Smooth, so
-/// that what it mirrors bends without breaks.
+/// A domed chrome disc with a round edge, closed behind: a whole convex body without creases, in which each
+/// thing around shows once, however close (reflection/chrome).
 void addCover(city::Mesh& mesh, float rim, float lip, int segments) {
-    constexpr int rings = 18;
+    constexpr float edge = 0.008f, height = 0.026f;
+    const float reach = rim - 0.012f - edge;
     std::vector<glm::vec2> profile;
+    constexpr int rings = 14, turns = 10;
     for (int i = 0; i <= rings; ++i) {
-        const float t = static_cast<float>(i) / rings, r = t * (rim - 0.012f);
-        const float dome = 0.020f * std::exp(-9 * t * t);
-        const float bead = 0.008f * std::exp(-60 * (t - 0.8f) * (t - 0.8f));
-        const float edge = -0.014f * std::pow(t, 12.0f);
-        profile.push_back({lip + dome + bead + edge, r});
+        const float t = static_cast<float>(i) / rings;
+        profile.push_back({lip + height * (1 - t * t), t * reach});
     }
-    profile.push_back({lip - 0.03f, rim - 0.014f});
+    // The dome meets the edge at this slope.
+    const float start = std::atan2(2 * height, reach);
+    for (int i = 1; i <= turns; ++i) {
+        const float angle = start + (glm::pi<float>() - start) * static_cast<float>(i) / turns;
+        profile.push_back({lip + edge * (std::cos(angle) - std::cos(start)),
+                           reach + edge * (std::sin(angle) - std::sin(start))});
+    }
+    profile.push_back({profile.back().x, 0});
     addRevolved(mesh, profile, segments, Surface::chrome);
 }
 

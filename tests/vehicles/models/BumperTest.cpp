@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <numbers>
 
 #include "vehicles/models/Bodies.h"
 #include "vehicles/models/Levels.h"
+#include "vehicles/models/Parts.h"
 
 namespace vehicles {
 namespace {
@@ -54,9 +57,14 @@ TEST(Bumper, FollowsTheShellOutsideItWithNormalsOfItsSurface) {
         addBumper(mesh, shell, shape);
         ASSERT_GT(mesh.triangleCount(), 300u);
         float farthest = 0;
+        int behind = 0;
         for (const city::Vertex& v : mesh.vertices) {
             const float r = glm::length(glm::vec2(v.position));
-            EXPECT_GT(r, 2.01f);
+            if (r < 2.01f) {
+                ++behind;
+                EXPECT_EQ(v.position.y, 0);
+                continue;
+            }
             EXPECT_LT(r, 2.075f);
             EXPECT_LE(std::abs(v.position.z - 0.5f), 0.0601f);
             EXPECT_NEAR(glm::length(v.normal), 1, 1e-5f);
@@ -70,6 +78,7 @@ TEST(Bumper, FollowsTheShellOutsideItWithNormalsOfItsSurface) {
                 EXPECT_EQ(v.normal.y, 0);
             }
         }
+        EXPECT_EQ(behind, 2);
         // Facets of 2 degrees, smoothed over some degrees: a little inside the circle.
         EXPECT_NEAR(farthest, 2.07f, 3e-3f);
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -78,6 +87,39 @@ TEST(Bumper, FollowsTheShellOutsideItWithNormalsOfItsSurface) {
             const glm::vec3 flat = glm::cross(b.position - a.position, c.position - a.position);
             EXPECT_GT(glm::dot(flat, a.normal + b.normal + c.normal), 0) << i / 3;
         }
+    }
+}
+
+TEST(Bumper, BothHalvesMakeOneClosedConvexBody) {
+    for (const bool rear : {false, true}) {
+        BumperShape shape{.z = 0.5f, .centre = 0};
+        shape.rear = rear;
+        city::Mesh mesh;
+        addBumper(mesh, halfCylinder(), shape);
+        addMirrored(mesh);
+        // Every edge has two triangles that face the same way.
+        std::map<std::array<float, 6>, int> edges;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const glm::vec3& a = mesh.vertices[mesh.indices[i + c]].position;
+                const glm::vec3& b = mesh.vertices[mesh.indices[i + (c + 1) % 3]].position;
+                // 0 + x: minus zero is zero.
+                ++edges[{0 + a.x, 0 + a.y, 0 + a.z, 0 + b.x, 0 + b.y, 0 + b.z}];
+                --edges[{0 + b.x, 0 + b.y, 0 + b.z, 0 + a.x, 0 + a.y, 0 + a.z}];
+            }
+        for (const auto& [edge, count] : edges) EXPECT_EQ(count, 0);
+        // No corner lies before any face by more than the facets' own sag.
+        float farthest = 0;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const glm::vec3 a = mesh.vertices[mesh.indices[i]].position,
+                            b = mesh.vertices[mesh.indices[i + 1]].position,
+                            c = mesh.vertices[mesh.indices[i + 2]].position;
+            const glm::vec3 flat = glm::cross(b - a, c - a);
+            if (glm::length(flat) < 1e-7f) continue;
+            for (const city::Vertex& v : mesh.vertices)
+                farthest = std::max(farthest, glm::dot(glm::normalize(flat), v.position - a));
+        }
+        EXPECT_LT(farthest, 5e-3f);
     }
 }
 
