@@ -17,7 +17,7 @@ namespace app {
 
 namespace {
 
-constexpr float viewSeconds = 4, changeSeconds = 2;
+constexpr float viewSeconds = 4, changeSeconds = 2, stillAfter = 0.01f;
 
 const std::map<std::string, std::function<vehicles::VehicleModel()>>& builtIn() {
     static const std::map<std::string, std::function<vehicles::VehicleModel()>> models{
@@ -93,7 +93,8 @@ std::vector<city::TourStop> tourOf(const std::vector<JsonPlace>& views) {
         stop.eye = p.at("eye").vector();
         stop.target = p.at("target").vector();
         if (stop.eye == stop.target) p.refuse("'eye' and 'target' are the same point", "move one of them");
-        for (const float held : {0.0f, viewSeconds}) {
+        // Tours are smooth curves: two stops at each end of a view, so that it stands still between them.
+        for (const float held : {0.0f, stillAfter, viewSeconds - stillAfter, viewSeconds}) {
             stop.time = time + held;
             tour.push_back(stop);
         }
