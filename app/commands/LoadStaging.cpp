@@ -1,8 +1,11 @@
 #include "app/commands/LoadStaging.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <map>
 #include <sstream>
@@ -50,15 +53,66 @@ std::uint32_t modelOf(const JsonPlace& p, Scene& scene) {
     return static_cast<std::uint32_t>(found - scene.models.begin());
 }
 
-glm::dvec3 onTheGround(const JsonPlace& p, const Scene& scene, double above) {
-    const std::vector<JsonPlace> two = p.items();
-    if (two.size() != 2)
-        p.refuse("has " + std::to_string(two.size()) + " numbers", "write two, [east, north]");
-    const glm::dvec3 flat(two[0].number(-1e6, 1e6), two[1].number(-1e6, 1e6), 0);
-    return {flat.x, flat.y, roadHeightNear(scene.city.roads, flat).value_or(0) + above};
+/// How a file tells places, and where they are in the scene.
+class Ground {
+  public:
+    Ground(const city::CityModel& city, bool geographic) : city_(city), geographic_(geographic) {}
+
+    /// On the ground, as high as the nearest lane.
+    glm::dvec3 point(const JsonPlace& p, double above) const {
+        const std::vector<JsonPlace> two = p.items();
+        if (two.size() != 2)
+            p.refuse("has " + std::to_string(two.size()) + " numbers", "write two, " + pair());
+        return placed(p, two[0], two[1], above);
+    }
+    /// In the air: up is the city's own height in metres, or, in degrees, over the nearest lane.
+    glm::dvec3 airborne(const JsonPlace& p) const {
+        if (!geographic_) return p.vector();
+        const std::vector<JsonPlace> three = p.items();
+        if (three.size() != 3)
+            p.refuse("has " + std::to_string(three.size()) + " numbers",
+                     "write three, [longitude, latitude, metres above the road]");
+        return placed(p, three[0], three[1], three[2].number(-100, 10000));
+    }
+
+  private:
+    std::string pair() const { return geographic_ ? "[longitude, latitude]" : "[east, north]"; }
+    glm::dvec3 placed(const JsonPlace& p, const JsonPlace& first, const JsonPlace& second,
+                      double above) const {
+        glm::dvec3 flat(0);
+        if (geographic_) {
+            const double longitude = first.number(-360, 360), latitude = second.number(-90, 90);
+            flat = city_.frame->localFromGeodetic(latitude, longitude, city_.frame->height());
+        } else {
+            flat = glm::dvec3(first.number(-1e6, 1e6), second.number(-1e6, 1e6), 0);
+        }
+        const city::Aabb& box = city_.bounds;
+        const glm::dvec2 off =
+            glm::max(glm::max(glm::dvec2(box.min) - glm::dvec2(flat), glm::dvec2(flat) - glm::dvec2(box.max)),
+                     glm::dvec2(0));
+        if (!box.empty() && glm::length(off) > 0)
+            p.refuse("lies " + std::to_string(std::lround(std::min(glm::length(off), 1e9))) +
+                         " m outside the city",
+                     "check the order, " + pair() + ", and the city");
+        return {flat.x, flat.y, roadHeightNear(city_.roads, flat).value_or(0) + above};
+    }
+
+    const city::CityModel& city_;
+    bool geographic_;
+};
+
+Ground groundOf(const JsonPlace& top, const city::CityModel& city) {
+    if (!top.has("coordinates")) return {city, false};
+    const JsonPlace p = top.at("coordinates");
+    const std::string way = p.text();
+    if (way != "metres" && way != "degrees")
+        p.refuse("'" + way + "' is no way to tell places", "write metres or degrees");
+    if (way == "degrees" && !city.frame)
+        p.refuse("this city has no place on Earth", "write metres, and places in them");
+    return {city, way == "degrees"};
 }
 
-StagedVehicle vehicleOf(const JsonPlace& p, Scene& scene) {
+StagedVehicle vehicleOf(const JsonPlace& p, const Ground& ground, Scene& scene) {
     p.only({"model", "paint", "at", "facing", "path", "speed", "above"});
     StagedVehicle vehicle;
     vehicle.model = modelOf(p.at("model"), scene);
@@ -68,14 +122,13 @@ StagedVehicle vehicleOf(const JsonPlace& p, Scene& scene) {
     if (p.has("at") == p.has("path")) p.refuse("stands or drives", "write one of 'at' and 'path'");
     if (p.has("at")) {
         if (p.has("speed")) p.at("speed").refuse("what stands has none", "write 'path' in place of 'at'");
-        vehicle.path = {onTheGround(p.at("at"), scene, above)};
+        vehicle.path = {ground.point(p.at("at"), above)};
         // A compass knows no other way round.
         vehicle.heading = glm::radians(90 - p.at("facing").number(-360, 360));
         return vehicle;
     }
     if (p.has("facing")) p.at("facing").refuse("what drives faces its path", "leave it out");
-    for (const JsonPlace& point : p.at("path").items())
-        vehicle.path.push_back(onTheGround(point, scene, above));
+    for (const JsonPlace& point : p.at("path").items()) vehicle.path.push_back(ground.point(point, above));
     if (vehicle.path.size() < 2) p.at("path").refuse("has fewer than two points", "add where it leads");
     if (vehicle.path.front() == vehicle.path.back() && vehicle.path.size() == 2)
         p.at("path").refuse("both points are the same", "move one of them");
@@ -84,14 +137,14 @@ StagedVehicle vehicleOf(const JsonPlace& p, Scene& scene) {
     return vehicle;
 }
 
-std::vector<city::TourStop> tourOf(const std::vector<JsonPlace>& views) {
+std::vector<city::TourStop> tourOf(const std::vector<JsonPlace>& views, const Ground& ground) {
     std::vector<city::TourStop> tour;
     float time = 0;
     for (const JsonPlace& p : views) {
         p.only({"name", "eye", "target"});
         city::TourStop stop;
-        stop.eye = p.at("eye").vector();
-        stop.target = p.at("target").vector();
+        stop.eye = ground.airborne(p.at("eye"));
+        stop.target = ground.airborne(p.at("target"));
         if (stop.eye == stop.target) p.refuse("'eye' and 'target' are the same point", "move one of them");
         // Tours are smooth curves: two stops at each end of a view, so that it stands still between them.
         for (const float held : {0.0f, stillAfter, viewSeconds - stillAfter, viewSeconds}) {
@@ -107,12 +160,13 @@ std::vector<city::TourStop> tourOf(const std::vector<JsonPlace>& views) {
 
 void readStaging(const std::string& text, const std::string& name, Scene& scene) {
     const nlohmann::json document = parseJson(text, name);
-    const JsonPlace top(document, name, "data/scenes/README.md");
-    top.only({"name", "vehicles", "views"});
+    const JsonPlace top(document, name, "data/staged/README.md");
+    top.only({"name", "coordinates", "vehicles", "views"});
     top.at("name").text();
-    for (const JsonPlace& p : top.at("vehicles").items()) scene.staged.push_back(vehicleOf(p, scene));
+    const Ground ground = groundOf(top, scene.city);
+    for (const JsonPlace& p : top.at("vehicles").items()) scene.staged.push_back(vehicleOf(p, ground, scene));
     if (top.has("views")) {
-        const std::vector<city::TourStop> tour = tourOf(top.at("views").items());
+        const std::vector<city::TourStop> tour = tourOf(top.at("views").items(), ground);
         if (!tour.empty()) scene.city.tour = tour;
     }
 }

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "app/frame/CameraRig.h"
 #include "vehicles/models/Fleet.h"
@@ -17,6 +18,8 @@ Scene scene() {
     city::Lane lane;
     lane.centreLine = {{-100, 0, 2}, {100, 0, 2}};
     s.city.roads.lanes.push_back(lane);
+    s.city.bounds.extend(glm::vec3(-100, -100, 0));
+    s.city.bounds.extend(glm::vec3(100, 100, 20));
     s.models.resize(1);
     s.models[0].name = "saloon";
     s.kinds = vehicles::kindsOf(s.models);
@@ -71,6 +74,23 @@ TEST(LoadStaging, ViewsTakeThePlaceOfTheTour) {
     EXPECT_NEAR(glm::distance(rig.tourPose(8).eye, glm::dvec3(0, 5, 1)), 0, 1e-6);
 }
 
+TEST(LoadStaging, DegreesAreThoseOfTheCitysPlaceOnEarth) {
+    Scene s = scene();
+    s.city.frame.emplace(60.17, 24.94, 0);
+    const glm::dvec3 there = s.city.frame->geodeticFromLocal({30, 40, 0});
+    std::ostringstream text;
+    text.precision(12);
+    text
+        << R"({"name": "x", "coordinates": "degrees", "vehicles": [{"model": "saloon", "facing": 180, "at": [)"
+        << there.y << ", " << there.x << "]}], \"views\": [{\"name\": \"a\", \"eye\": [" << there.y << ", "
+        << there.x << ", 1.7], \"target\": [24.94, 60.17, 1.7]}]}";
+    readStaging(text.str(), "street.json", s);
+    // The frame touches the Earth: 40 m off its origin it is 0.2 mm above it.
+    EXPECT_NEAR(glm::distance(s.staged.at(0).path.at(0), glm::dvec3(30, 40, 2)), 0, 1e-3);
+    EXPECT_NEAR(s.staged[0].heading, -std::numbers::pi / 2, 1e-12);
+    EXPECT_NEAR(static_cast<double>(s.city.tour.at(0).eye.z), 3.7, 1e-6);
+}
+
 TEST(LoadStaging, RefusesWithPlaceAndRemedy) {
     const auto says = [](const std::string& text, const std::string& part) {
         const std::string why = refusal(text);
@@ -90,6 +110,9 @@ TEST(LoadStaging, RefusesWithPlaceAndRemedy) {
     says(with(R"({"model": "saloon", "at": [1e300, 0], "facing": 0})"), "lies outside");
     says(with(R"({"model": "saloon", "at": [0, 0], "facing": 0, "colour": [1, 1, 1]})"), "use only");
     says(with("", R"(, "views": [{"name": "a", "eye": [0, 0, 1], "target": [0, 0, 1]}])"), "same point");
+    says(with("", R"(, "coordinates": "feet")"), "write metres or degrees");
+    says(with("", R"(, "coordinates": "degrees")"), "no place on Earth");
+    says(with(R"({"model": "saloon", "at": [300, 0], "facing": 0})"), "200 m outside the city");
 }
 
 TEST(LoadStaging, TheStreetThatComesWithItIsSound) {
