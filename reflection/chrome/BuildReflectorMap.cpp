@@ -186,7 +186,8 @@ BuiltReflectorMap buildReflectorMap(const city::Mesh& piece, const MapFrame& ask
     }
     for (const std::uint8_t d : doubled) result.report.overlapping += d;
 
-    const ClosedReflector closed = closeReflector(lattice, corners, sign, cells);
+    const ClosedReflector closed = closeReflector(
+        lattice, corners, sign, behind && bend == Bend::convex ? Closing::envelope : Closing::ball, cells);
     if (closed.covered == 0) return result;
     result.report.tilted = closed.tilted;
     result.report.coveredShare = static_cast<double>(closed.covered) / static_cast<double>(lattice.size());

@@ -36,8 +36,10 @@ struct BuiltReflectorMap {
 /// Makes the map of a piece that is star-shaped around the centre: seen from it the triangles' fronts face
 /// away (convex) or towards it (concave). Positions are those of the flat triangles, normals those
 /// interpolated between their corners, as a renderer shades them. What the piece leaves open is closed:
-/// continued smoothly past its rim and then drawn to the sphere of the piece's mean radius, so that a search
-/// that wanders off the part still has a surface to walk on; such points are not `covered`.
+/// continued smoothly past its rim and then, where it is convex, by the envelope of its rim's tangent planes,
+/// so that the whole is convex as well (CloseReflector.h); else drawn to the sphere of the piece's mean
+/// radius. So a search that wanders off the part still has a surface to walk on; such points are not
+/// `covered`.
 ///
 /// Frame: the mesh's own, metres. Deterministic. Cost: per triangle the corners of its bounding rectangle on
 /// the cube's faces, then some sweeps over 6 cells^2 corners: 5 to 50 ms for 64 cells. Source: Estalella et

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace reflection {
 
@@ -59,10 +60,86 @@ bool continueRim(const CubeLattice& lattice, const std::vector<ReflectorCorner>&
     return true;
 }
 
+/// Tangent planes along the rim of which the envelope is taken, at most.
+constexpr std::size_t mostPlanes = 192;
+/// Radius of the envelope's ball, in radii of the part: it closes the far side, and must not touch the part.
+constexpr double ballRadius = 1.5;
+/// Times that creases of the envelope are averaged over their neighbours.
+constexpr int roundings = 4;
+
+/// Everything that no layer has reached yet. A plane c . x = 1 is kept as c: along g it lies at 1 / (c . g),
+/// and the nearest of all planes bounds the body.
+void closeByEnvelope(const CubeLattice& lattice, std::vector<ReflectorCorner>& corners,
+                     const std::vector<std::uint32_t>& layer, const std::vector<std::uint32_t>& rim) {
+    double radius = 0;
+    for (std::uint32_t id = 0; id < lattice.size(); ++id)
+        if (layer[id] > 0) radius = std::max(radius, glm::length(lattice.point(id)) / corners[id].reciprocal);
+    radius *= ballRadius;
+    std::vector<glm::dvec3> planes;
+    const std::size_t step = rim.size() / mostPlanes + 1;
+    for (std::size_t k = 0; k < rim.size(); k += step) {
+        const ReflectorCorner& c = corners[rim[k]];
+        planes.push_back(c.normal * (c.reciprocal / glm::dot(c.normal, lattice.point(rim[k]))));
+    }
+    struct Open {
+        std::uint32_t id;
+        double q;
+        glm::dvec3 plane;
+    };
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::vector<Open> open;
+    std::vector<std::uint32_t> place(lattice.size(), none);
+    for (std::uint32_t id = 0; id < lattice.size(); ++id) {
+        if (layer[id] > 0) continue;
+        const glm::dvec3& g = lattice.point(id);
+        const double length = glm::length(g);
+        Open o{id, length / radius, g / (length * radius)};
+        for (const glm::dvec3& c : planes) {
+            const double q = glm::dot(c, g);
+            if (q > o.q) o.q = q, o.plane = c;
+        }
+        place[id] = static_cast<std::uint32_t>(open.size());
+        open.push_back(o);
+    }
+    // On a face the reciprocal distance of a convex body is a convex function, and so is its average.
+    std::vector<Open> rounded = open;
+    for (int k = 0; k < roundings; ++k) {
+        for (std::size_t o = 0; o < open.size(); ++o) {
+            const glm::dvec3& g = lattice.point(open[o].id);
+            const glm::dvec3 major(glm::greaterThan(glm::abs(g), glm::dvec3(1 - 1e-9)));
+            // On edges of the cube faces bend.
+            if (major.x + major.y + major.z > 1.5) continue;
+            double q = 2 * open[o].q;
+            glm::dvec3 plane = 2.0 * open[o].plane;
+            double n = 2;
+            for (const std::uint32_t near : lattice.neighbours(open[o].id)) {
+                if (near == CubeLattice::none || place[near] == none) continue;
+                q += open[place[near]].q;
+                plane += open[place[near]].plane;
+                n += 1;
+            }
+            if (n < 5.5) continue;
+            rounded[o].q = q / n;
+            plane /= n;
+            // Slopes are averaged along the face; the rest follows from the value.
+            const glm::dvec3 axis = major * g;
+            rounded[o].plane = plane + (q / n - glm::dot(plane, g)) * axis;
+        }
+        open.swap(rounded);
+    }
+    for (const Open& o : open) {
+        const glm::dvec3& g = lattice.point(o.id);
+        ReflectorCorner& c = corners[o.id];
+        c.normal = glm::normalize(o.plane);
+        c.reciprocal = o.q;
+        liftNormal(c.normal, g / glm::length(g));
+    }
+}
+
 }  // namespace
 
 ClosedReflector closeReflector(const CubeLattice& lattice, std::vector<ReflectorCorner>& corners, double sign,
-                               int cells) {
+                               Closing closing, int cells) {
     ClosedReflector result;
     double radius = 0;
     std::vector<std::uint32_t> layer(lattice.size(), 0);  // 0: not reached yet; covered corners are layer 1
@@ -118,6 +195,10 @@ ClosedReflector closeReflector(const CubeLattice& lattice, std::vector<Reflector
         for (std::size_t k = 0; k < front.size(); ++k) {
             corners[front[k]] = made[k];
             layer[front[k]] = depth;
+        }
+        if (closing == Closing::envelope) {
+            closeByEnvelope(lattice, corners, layer, front);
+            break;
         }
     }
     return result;

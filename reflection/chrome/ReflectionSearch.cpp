@@ -78,13 +78,31 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             normal = choose(entry.enters, (num(1) / root(dot(m, m))) * m, normal);
         }
         const Num3 toEye = eyes - point, toVertex = v - point;
-        Points at, up;
-        Values path, error, lookups, hidden;
+        Points at, up, again;
+        Values path, error, lookups, hidden, retried;
+        MD failed = hn::And(visible, descent.best.error > num(options.tolerance * options.tolerance));
+        if (!map.coveredNormalTable().empty() && !hn::AllFalse(tag, failed)) {
+            // What does not arrive has mostly run into the closing surface's creases. From the part itself a
+            // descent reaches the reflection point that is there, or leaves the part as well.
+            const Descent other = descend(
+                map, eyes, v, judge(map, eyes, v, startFromTable(map.coveredNormalTable(), eyeSide, v), true),
+                failed, options, true);
+            const MD better = hn::And(failed, other.best.error < descent.best.error);
+            const MD arrived =
+                hn::And(better, other.best.error <= num(options.tolerance * options.tolerance));
+            point = choose(arrived, other.best.point, point);
+            normal = choose(arrived, other.best.normal, normal);
+            error.store(choose(arrived, other.best.error, descent.best.error));
+            again.store(other.best.point);
+            retried.store(choose(failed, num(1), num(0)));
+            lookups.store(choose(failed, descent.lookups + other.lookups, descent.lookups));
+        } else {
+            error.store(descent.best.error);
+            lookups.store(descent.lookups);
+        }
         at.store(point);
         up.store(normal);
         path.store(root(dot(toEye, toEye)) + root(dot(toVertex, toVertex)));
-        error.store(descent.best.error);
-        lookups.store(descent.lookups);
         hidden.store(choose(entry.enters, num(1), num(0)));
         for (std::size_t k = 0; k < n; ++k) {
             ReflectionPoint& r = points[first + k];
@@ -98,9 +116,12 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
                 continue;
             }
             r.residual = error.at[k] <= 1 ? std::asin(std::sqrt(error.at[k])) : 3.14159265358979;
-            r.status = r.residual > options.tolerance ? ReflectionStatus::outOfSteps
-                       : map.covered(r.point)         ? ReflectionStatus::found
-                                                      : ReflectionStatus::unreflected;
+            if (r.residual <= options.tolerance)
+                r.status = map.covered(r.point) ? ReflectionStatus::found : ReflectionStatus::unreflected;
+            else if (retried.at[k] > 0 && !map.covered(r.point) && !map.covered(again.get(k)))
+                r.status = ReflectionStatus::unreflected;
+            else
+                r.status = ReflectionStatus::outOfSteps;
         }
     }
 }

@@ -56,7 +56,21 @@ ReflectorMap::ReflectorMap(int cellsPerSide, Bend bend, const MapFrame& frame, s
       own(std::move(covered)) {
     whole = std::all_of(own.begin(), own.end(), [](std::uint8_t c) { return c != 0; });
     findRadii();
-    indexNormals();
+    byNormal = indexNormals(false);
+    if (!whole) byCoveredNormal = indexNormals(true);
+}
+
+bool ReflectorMap::coveredAt(const glm::dvec3& direction) const {
+    const FacePoint at = facePointOf(direction / place.stretch);
+    const double x = (at.s + 1) * 0.5 * cells, y = (at.t + 1) * 0.5 * cells;
+    const int column = std::clamp(static_cast<int>(x), 0, cells - 1);
+    const int row = std::clamp(static_cast<int>(y), 0, cells - 1);
+    const double u = x - column, v = y - row;
+    const std::size_t first = cornerIndex(cells, static_cast<int>(at.face), column, row);
+    const std::size_t below = first + static_cast<std::size_t>(cells + 1);
+    return (1 - v) * ((1 - u) * own[first] + u * own[first + 1]) +
+               v * ((1 - u) * own[below] + u * own[below + 1]) >=
+           0.5;
 }
 
 ReflectorMap::Sample ReflectorMap::sample(const glm::dvec3& direction) const {
@@ -102,8 +116,9 @@ void ReflectorMap::findRadii() {
     if (cells == 0) inner = 0;
 }
 
-void ReflectorMap::indexNormals() {
-    if (cells == 0) return;
+std::vector<glm::vec3> ReflectorMap::indexNormals(bool coveredOnly) const {
+    std::vector<glm::vec3> table;
+    if (cells == 0) return table;
     // Every other corner (at most 24 to a side) competes for every texel of the table.
     const int step = std::max(1, cells / 24);
     struct Entry {
@@ -114,10 +129,12 @@ void ReflectorMap::indexNormals() {
         for (int row = 0; row <= cells; row += step)
             for (int column = 0; column <= cells; column += step) {
                 const std::size_t index = cornerIndex(cells, face, column, row);
+                if (coveredOnly && own[index] == 0) continue;
                 entries.push_back({glm::normalize(glm::vec3(values[index]) / glm::vec3(place.stretch)),
                                    glm::vec3(cornerPoint(cells, face, column, row))});
             }
-    byNormal.resize(6 * static_cast<std::size_t>(normalTableSide) * normalTableSide);
+    if (entries.empty()) return table;
+    table.resize(6 * static_cast<std::size_t>(normalTableSide) * normalTableSide);
     std::size_t at = 0;
     for (int face = 0; face < 6; ++face)
         for (int row = 0; row < normalTableSide; ++row)
@@ -129,10 +146,11 @@ void ReflectorMap::indexNormals() {
                     const float cosine = glm::dot(wanted, e.normal);
                     if (cosine > best) {
                         best = cosine;
-                        byNormal[at] = e.direction;
+                        table[at] = e.direction;
                     }
                 }
             }
+    return table;
 }
 
 glm::dvec3 ReflectorMap::directionOfNormal(const glm::dvec3& normal) const {

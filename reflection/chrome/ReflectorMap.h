@@ -75,7 +75,9 @@ class ReflectorMap {
     /// corners.
     Sample sample(const glm::dvec3& direction) const;
     /// Whether the part itself (not its closing surface) is seen in a direction.
-    bool covered(const glm::dvec3& direction) const { return whole || sample(direction).covered; }
+    bool covered(const glm::dvec3& direction) const { return whole || coveredAt(direction); }
+    /// The part covers every direction: there is no closing surface.
+    bool closed() const { return whole; }
 
     /// A direction (before the stretch is taken out) in which the surface's normal is close to the given one,
     /// the nearest of a table: where a search for a far vertex starts.
@@ -89,10 +91,13 @@ class ReflectorMap {
     std::span<const std::uint8_t> coverage() const { return own; }
     /// For each of 6 normalTableSide^2 normals the point on the cube where it is found.
     std::span<const glm::vec3> normalTable() const { return byNormal; }
+    /// The same table of points that the part itself covers; empty where it covers all or none.
+    std::span<const glm::vec3> coveredNormalTable() const { return byCoveredNormal; }
     static constexpr int normalTableSide = 24;  ///< texels per side of a face of the table
 
     std::size_t bytes() const {
-        return values.size() * sizeof(Corner) + own.size() + byNormal.size() * sizeof(glm::vec3);
+        return values.size() * sizeof(Corner) + own.size() +
+               (byNormal.size() + byCoveredNormal.size()) * sizeof(glm::vec3);
     }
 
     /// Number of corners of a map of so many cells, and the index of one.
@@ -108,7 +113,8 @@ class ReflectorMap {
     static glm::dvec3 cornerPoint(int cells, int face, int column, int row);
 
   private:
-    void indexNormals();
+    bool coveredAt(const glm::dvec3& direction) const;
+    std::vector<glm::vec3> indexNormals(bool coveredOnly) const;
     void findRadii();
 
     int cells = 0;
@@ -118,7 +124,7 @@ class ReflectorMap {
     bool whole = false;  ///< no closing surface
     std::vector<Corner> values;
     std::vector<std::uint8_t> own;
-    std::vector<glm::vec3> byNormal;
+    std::vector<glm::vec3> byNormal, byCoveredNormal;
 };
 
 }  // namespace reflection

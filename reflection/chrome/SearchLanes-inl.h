@@ -110,6 +110,10 @@ struct Descent {
     Num lookups;
 };
 
+/// Halvings in a row after which a convex piece is left: a step to a 1,000th that is still no better runs
+/// into a crease of the closing surface.
+constexpr double mostHalvings = 10;
+
 /// Steps from the given starts until the error is small enough, the steps vanish, or the lookups are used up.
 HWY_INLINE Descent descend(const ReflectorMap& map, const Num3& eye, const Num3& vertex, const Judged& start,
                            MD active, const SearchOptions& options, bool convex) {
@@ -122,12 +126,15 @@ HWY_INLINE Descent descend(const ReflectorMap& map, const Num3& eye, const Num3&
     result.lookups = num(1);
     MD walking = hn::And(active, result.best.error > enough);
     Num3 step = result.best.step;
+    Num halvings = num(0);
     for (int k = 1; k < options.lookups && !hn::AllFalse(tag, walking); ++k) {
         const Judged next = judge(map, eye, vertex, result.best.onCube + step, convex);
         result.lookups = choose(walking, result.lookups + num(1), result.lookups);
         const MD better = hn::And(walking, next.error < result.best.error);
         result.best = choose(better, next, result.best);
         step = choose(better, next.step, num(0.5) * step);
+        halvings = choose(better, num(0), halvings + num(1));
+        if (convex) walking = hn::And(walking, halvings < num(mostHalvings));
         const MD moves = most(size(step.x), most(size(step.y), size(step.z))) > still;
         walking = hn::And(walking, hn::And(moves, result.best.error > enough));
     }

@@ -45,8 +45,9 @@ HWY_INLINE Num3 planeMirror(const Num3& foot, const Num3& normal, const Num3& ey
     return vertexFoot + (b / (a + b)) * (eyeFoot - vertexFoot);
 }
 
-/// Directions from the centre to start from, stretch taken out.
-HWY_INLINE Num3 startFor(const ReflectorMap& map, const EyeSide& eyeSide, const Num3& vertex) {
+/// The direction that a table of normals has for the bisector seen from the centre, stretch taken out.
+HWY_INLINE Num3 startFromTable(std::span<const glm::vec3> normals, const EyeSide& eyeSide,
+                               const Num3& vertex) {
     const Doubles tag;
     const Num length = root(dot(vertex, vertex));
     const Num3 bisector = num3(eyeSide.unit) + (num(1) / most(length, num(1e-300))) * vertex;
@@ -57,12 +58,17 @@ HWY_INLINE Num3 startFor(const ReflectorMap& map, const EyeSide& eyeSide, const 
     };
     const Num index = fma(fma(Num{at.face}, num(side), texel(at.t)), num(side), texel(at.s));
     const auto first = hn::DemoteTo(HalfInts(), (num(3) * index).v);
-    const float* table = &map.normalTable().front().x;
+    const float* table = &normals.front().x;
     const auto load = [&](int component) {
         return Num{hn::PromoteTo(tag, hn::GatherIndex(HalfFloats(), table + component, first))};
     };
-    Num3 start{load(0), load(1), load(2)};
+    return {load(0), load(1), load(2)};
+}
 
+/// Directions from the centre to start from, stretch taken out.
+HWY_INLINE Num3 startFor(const ReflectorMap& map, const EyeSide& eyeSide, const Num3& vertex) {
+    const Doubles tag;
+    Num3 start = startFromTable(map.normalTable(), eyeSide, vertex);
     const Num3 eye = num3(eyeSide.eye);
     const Stretch stretch(map);
     MD works;

@@ -100,9 +100,10 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t a = t[k], b = t[(k + 1) % 3];
                 const double length = apart(image[a].fromEye, image[b].fromEye);
-                const bool seen =
-                    image[a].status == ReflectionStatus::found && image[b].status == ReflectionStatus::found;
-                if (length <= (seen ? unbent : shortEdge * options.tolerance) || (outside(a) && outside(b)))
+                // Only where the image runs into the part's outline it bends by more.
+                const bool smooth = (image[a].status == ReflectionStatus::found) ==
+                                    (image[b].status == ReflectionStatus::found);
+                if (length <= (smooth ? unbent : shortEdge * options.tolerance) || (outside(a) && outside(b)))
                     continue;
                 if (!halved.try_emplace(keyOf(a, b), straight).second) continue;
                 asked.emplace_back(a, b);

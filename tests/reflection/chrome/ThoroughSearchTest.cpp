@@ -124,5 +124,39 @@ TEST(ThoroughSearch, AgreesWithTheQuickOneOnConvexPieces) {
     }
 }
 
+TEST(ThoroughSearch, AgreesWithTheQuickOneOnOpenConvexPieces) {
+    // A cap, a strip of a rounded box, and a narrow band: most vertices are reflected past their rims.
+    struct Open {
+        const char* name;
+        city::Mesh mesh;
+    };
+    const Open pieces[]{{"cap", meshOf(ellipsoid({1, .7, .5}), 60, 0, 1.1)},
+                        {"rounded box", meshOf(roundedBox({1, .4, .6}, 4), 60, 0, 1.3)},
+                        {"band", meshOf(ellipsoid({1, 1, 1.5}), 60, 1.3, 1.5)}};
+    for (const Open& piece : pieces) {
+        SCOPED_TRACE(piece.name);
+        const BuiltReflectorMap built = buildReflectorMap(piece.mesh, {0, 0, 0}, Bend::convex);
+        Scatter random(17);
+        int found = 0, lost = 0, invented = 0;
+        for (int view = 0; view < 6; ++view) {
+            const glm::dvec3 eye = random.direction() * random.between(1.3, 5);
+            std::vector<glm::dvec3> vertices(60);
+            for (glm::dvec3& v : vertices) v = random.direction() * random.between(1.1, 4);
+            std::vector<ReflectionPoint> points(vertices.size());
+            findReflectionPoints(built.map, eye, vertices, points);
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                const bool quick = points[k].status == ReflectionStatus::found;
+                const bool truly = !findAllReflectionPoints(built.map, eye, vertices[k]).empty();
+                found += quick;
+                lost += truly && !quick;
+                invented += quick && !truly;
+            }
+        }
+        EXPECT_GT(found, 10);
+        EXPECT_EQ(lost, 0);
+        EXPECT_EQ(invented, 0);
+    }
+}
+
 }  // namespace
 }  // namespace reflection
