@@ -56,6 +56,7 @@ std::vector<Row> tryFrames(const Options& options);
 std::vector<Row> tryTraffic(const Options& options);
 std::vector<Row> trySettings(const Options& options);
 std::vector<Row> tryMirrors(const Options& options);
+std::vector<Row> tryChrome(const Options& options);
 
 /// All of them, in the order in which they are told.
 std::vector<Campaign> allCampaigns();
