@@ -33,8 +33,9 @@ MirrorWorld chromeWorld(const Options& options) {
 int benchChrome(const Options& options) {
     const MirrorWorld world = chromeWorld(options);
     const ChromeStage stage(world);
-    ResultFile results("chrome", std::string(programVersion), "");
-    Progress progress("chrome", 5 + 3 * stage.parts.size(), options.quiet);
+    const OffscreenContext context;
+    ResultFile results("chrome", std::string(programVersion), context.renderer());
+    Progress progress("chrome", 5 + 3 * stage.parts.size() + chromePictureSteps, options.quiet);
     ChromeBenchOptions how;
     how.seed = options.seed;
     how.car = options.car;
@@ -48,10 +49,16 @@ int benchChrome(const Options& options) {
         for (const nlohmann::ordered_json& row : part.rows) results.add(row);
         parts.push_back(std::move(part));
     };
-    add(chromeSearches(how));
-    add(chromeShares(stage, how));
-    add(publishedSearches(stage, how));
-    add(chromeStills(stage, how));
+    const auto wanted = [&](const char* part) {
+        return (options.part.empty() || options.part == part) && !how.stop();
+    };
+    if (wanted("search")) add(chromeSearches(how));
+    if (wanted("share")) add(chromeShares(stage, how));
+    if (wanted("published")) add(publishedSearches(stage, how));
+    if (wanted("still")) add(chromeStills(stage, how));
+    if (wanted("frame")) add(chromeFrames(stage, how));
+    if (wanted("picture")) add(chromePictures(stage, how));
+    if (wanted("none")) add(chromeNone(stage, how));
     std::vector<std::vector<std::string>> last;
     for (const MirrorRows& part : parts) {
         if (part.table.size() < 2) continue;

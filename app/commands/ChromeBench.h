@@ -18,6 +18,7 @@ namespace app {
 struct ChromeBenchOptions {
     glm::ivec2 size{1280, 720};     ///< pixels in which displacements are measured
     int repeats = 7;                ///< timed rounds
+    glm::ivec2 picture{640, 480};   ///< pixels of pictures and of timed frames
     int steps = 1000;               ///< of the moving eye
     std::size_t vertices = 200000;  ///< searched for a shape
     std::uint64_t seed = 1;
@@ -47,7 +48,10 @@ MirrorRows publishedSearches(const ChromeStage& stage, const ChromeBenchOptions&
 /// neighbours do. Needs no graphics.
 MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& options);
 
-/// Whole frames by share.
+/// How often the three below tell of their progress.
+constexpr std::size_t chromePictureSteps = 10;
+
+/// Whole frames by share. Needs a context, as the next two.
 MirrorRows chromeFrames(const ChromeStage& stage, const ChromeBenchOptions& options);
 
 /// Pictures by environment maps, by searched reflection points and by rays: error over the chrome's pixels,

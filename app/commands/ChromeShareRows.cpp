@@ -151,9 +151,7 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
         for (const PaperShare& s : paperShares) crowds.emplace_back(part, s.share, options.vertex);
         std::vector<Share> here(shares);
         // Concave pieces take a thousand times as long; one round of them is enough.
-        const bool slow = std::any_of(
-            part.reflector.pieces.begin(), part.reflector.pieces.end(),
-            [](const reflection::ReflectorPiece& p) { return p.bend == reflection::Bend::concave; });
+        const bool slow = part.concave();
         for (int round = slow ? 0 : -1; round < (slow ? 1 : options.repeats); ++round)
             for (std::size_t s = 0; s < shares; ++s) {
                 const Stopwatch watch;

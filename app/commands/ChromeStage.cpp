@@ -9,6 +9,13 @@
 
 namespace app {
 
+namespace {
+
+/// Vertices that are looked at in a concave reflector.
+constexpr std::size_t mostOnConcave = 3000;
+
+}  // namespace
+
 CloseMesh welded(const LitMesh& mesh) {
     CloseMesh out;
     std::map<std::array<float, 3>, std::uint32_t> known;
@@ -53,6 +60,15 @@ ChromeStage::ChromeStage(const MirrorWorld& scene, double reach) : world(scene) 
         }
         std::stable_sort(part.close.begin(), part.close.end(),
                          [](const CloseMesh& a, const CloseMesh& b) { return a.distance < b.distance; });
+        if (part.concave()) {
+            // The nearest things are enough to see how it does.
+            std::size_t left = mostOnConcave;
+            std::erase_if(part.close, [&left](const CloseMesh& m) {
+                if (m.positions.size() > left) return true;
+                left -= m.positions.size();
+                return false;
+            });
+        }
         parts.push_back(std::move(part));
     }
 }

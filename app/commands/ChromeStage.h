@@ -30,10 +30,11 @@ struct ChromePart {
     const MirrorWorld::Curved* mirror = nullptr;
     reflection::Reflector reflector;
     std::vector<CloseMesh> close;  ///< nearest first
-    std::size_t vertices() const {
-        std::size_t n = 0;
-        for (const CloseMesh& m : close) n += m.positions.size();
-        return n;
+    /// Whether searches on it look for all points, which takes a hundred times as long.
+    bool concave() const {
+        for (const reflection::ReflectorPiece& p : reflector.pieces)
+            if (p.bend == reflection::Bend::concave) return true;
+        return false;
     }
 };
 

@@ -16,7 +16,7 @@ namespace {
 /// A vertex is not said to jump by less than this: the eighth of a pixel to which rasterisers snap.
 constexpr double floorPixels = 0.125;
 /// Vertices that are followed: so many of the things nearest to a reflector, on convex and on concave pieces.
-constexpr std::size_t mostFollowed = 3000, mostOnConcave = 60;
+constexpr std::size_t mostFollowed = 3000, mostOnConcave = 24;
 /// Steps are compared with the truth every so many.
 constexpr int truthEvery = 250;
 

@@ -264,6 +264,11 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
                 "ours)")
             ->type_name("NAME")
             ->check(CLI::IsMember(std::vector<std::string>{"ours", "paper"}));
+    if (groups & searchOption)
+        parser.add_option("--part", o.part, "one part of the measurement alone")
+            ->type_name("NAME")
+            ->check(CLI::IsMember(std::vector<std::string>{"search", "share", "published", "still", "frame",
+                                                           "picture", "none"}));
     if (groups & saveOption)
         parser.add_option("--save", o.save, "folder for pictures of what was measured")
             ->type_name("DIR")

@@ -63,6 +63,7 @@ struct Options {
     std::uint64_t rays = 4'000'000;             ///< of `stability`
     std::optional<std::filesystem::path> save;  ///< folder for what was measured, as pictures
     bool publishedSearch = false;               ///< --search paper
+    std::string part;                           ///< --part; empty: all of a measurement
 
     /// --gpu-map-memory in bytes.
     std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
@@ -99,7 +100,7 @@ enum OptionGroup : unsigned {
     errorOptions = 1u << 21,   ///< --error --fixed-quality
     saveOption = 1u << 23,     ///< --save
     bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
-    searchOption = 1u << 25,   ///< --search
+    searchOption = 1u << 25,   ///< --search --part
     chromeOptions = 1u << 26,  ///< --chrome --chrome-share
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,

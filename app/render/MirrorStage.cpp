@@ -89,9 +89,9 @@ const reflection::ReflectionTree& MirrorStage::draw(reflection::TreeSettings set
     return my.tree;
 }
 
-void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options) {
+void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options, bool concave) {
     Impl& my = *impl_;
-    my.chrome.emplace(my.world, options);
+    my.chrome.emplace(my.world, options, concave);
     for (std::size_t c = 0; c < my.world.curved.size(); ++c) my.renderer.setLeftOut(c, my.chrome->closeTo(c));
 }
 

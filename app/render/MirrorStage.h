@@ -27,8 +27,8 @@ class MirrorStage {
     const reflection::ReflectionTree& drawWithStencil(reflection::TreeSettings settings);
 
     /// From now on curved reflectors show what is close by searched reflection points. Environment maps then
-    /// leave it out.
-    void setChrome(const reflection::VirtualMeshOptions& options);
+    /// leave it out. `concave`: see MirrorWorldChrome.
+    void setChrome(const reflection::VirtualMeshOptions& options, bool concave = true);
     const ChromeFrame& chromeFrame() const;  ///< of the last frame
 
     /// Linear radiance, row 0 at the top. Waits.

@@ -43,6 +43,7 @@ reflection::PixelRect pixelsOf(const reflection::EyeView& view, const glm::ivec2
                                const glm::dvec3& centre, double radius) {
     const reflection::PixelRect all{glm::ivec2(0), size};
     const glm::dvec3 c = glm::dmat3(view.viewFromWorld) * (centre - view.eye);
+    if (c.z > radius) return {glm::ivec2(0), glm::ivec2(0)};
     if (-c.z <= 1.1 * radius) return all;
     // The box around the ball, at its nearest depth.
     glm::dvec2 low(1e9), high(-1e9);
@@ -57,6 +58,17 @@ reflection::PixelRect pixelsOf(const reflection::EyeView& view, const glm::ivec2
         return glm::ivec2(glm::clamp(p, glm::dvec2(0), glm::dvec2(size)));
     };
     return {inside(glm::floor(low)), inside(glm::ceil(high))};
+}
+
+/// Whether some triangle shows the eye its front.
+bool faces(const city::Mesh& mesh, const glm::vec3& eye) {
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+        const glm::vec3& a = mesh.vertices[mesh.indices[k]].position;
+        const glm::vec3& b = mesh.vertices[mesh.indices[k + 1]].position;
+        const glm::vec3& c = mesh.vertices[mesh.indices[k + 2]].position;
+        if (glm::dot(glm::cross(b - a, c - a), eye - a) > 0) return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -103,7 +115,8 @@ struct MirrorWorldChrome::Impl {
     }
 };
 
-MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options)
+MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options,
+                                     bool concave)
     : impl_(new Impl{world, options, {}, {}, {}, {}, {}}) {
     for (const LitMesh& m : world.objects) {
         std::vector<float>& floats = impl_->colours.emplace_back();
@@ -117,9 +130,15 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
         for (std::size_t o = 0; o < world.objects.size(); ++o)
             chrome.close[o] = distanceTo(world.objects[o].bounds(), curved.reflector.centre) <
                               (closeRadii + 1) * curved.reflector.radius;
-        reflection::Reflector reflector = reflection::makeReflector(asMesh(curved.mesh));
+        // Drawn is what has been drawn before, depth by depth: the finer surface only where it is one piece.
+        reflection::Reflector reflector = reflection::makeReflector(asMesh(curved.finest()));
+        if (reflector.pieces.size() == 1)
+            reflector.pieces.front().mesh = asMesh(curved.mesh);
+        else
+            reflector = reflection::makeReflector(asMesh(curved.mesh));
         for (reflection::ReflectorPiece& piece : reflector.pieces) {
             if (piece.built.map.empty()) continue;
+            if (!concave && piece.bend == reflection::Bend::concave) continue;
             Impl::Piece& made = chrome.pieces.emplace_back();
             made.piece = std::move(piece);
             for (std::size_t o = 0; o < world.objects.size(); ++o) {
@@ -132,6 +151,7 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
                      {}});
             }
         }
+        if (chrome.pieces.empty()) chrome.close.assign(world.objects.size(), false);
     }
 }
 MirrorWorldChrome::~MirrorWorldChrome() = default;
@@ -150,7 +170,10 @@ ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::
     for (std::size_t c = 0; c < my.chrome.size(); ++c) {
         const reflection::CurvedReflector& reflector = my.world.curved[c].reflector;
         const reflection::PixelRect pixels = pixelsOf(view, size, reflector.centre, reflector.radius);
-        if (my.chrome[c].pieces.empty() || pixels.size().x <= 0 || pixels.size().y <= 0) continue;
+        const bool nothingClose = std::none_of(my.chrome[c].close.begin(), my.chrome[c].close.end(),
+                                               [](bool close) { return close; });
+        if (my.chrome[c].pieces.empty() || nothingClose || pixels.size().x <= 0 || pixels.size().y <= 0)
+            continue;
         reflection::VirtualMeshOptions options = my.options;
         const glm::dvec3 towards = reflector.centre - view.eye;
         const double distance = glm::length(towards);
@@ -160,6 +183,7 @@ ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::
             options.coneCosine = std::sqrt(1 - sine * sine);
         }
         for (Impl::Piece& p : my.chrome[c].pieces) {
+            if (!faces(p.piece.mesh, glm::vec3(view.eye))) continue;
             ++frame.jobs;
             const auto start = std::chrono::steady_clock::now();
             for (Impl::Object& o : p.objects) {

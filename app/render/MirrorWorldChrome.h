@@ -21,8 +21,12 @@ struct ChromeFrame {
 /// truly appear (reflection/chrome), over what their environment maps show of everything else.
 class MirrorWorldChrome {
   public:
-    /// Cuts the reflectors into pieces and makes their maps. Needs no context.
-    MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options);
+    /// Cuts the reflectors into pieces and makes their maps (of their finest triangles where they
+    /// are one piece). Needs no context.
+    /// `concave`: also of concave pieces, where searches look for all reflection points and take a hundred
+    /// times as long; else environment maps go on showing them.
+    MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options,
+                      bool concave = true);
     ~MirrorWorldChrome();
 
     /// Which objects a reflector shows as virtual objects; its environment map need not hold them.
