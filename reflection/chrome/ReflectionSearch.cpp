@@ -45,6 +45,8 @@ struct Values {
 };
 
 /// Convex pieces. What has no answer here comes back outOfSteps. Everything in the map's frame and units.
+/// data/shaders/chrome_search.comp and chrome_map.glsl do the same: whoever changes a step here or in the
+/// -inl.h files changes them too (ChromeSearchGlTest compares).
 void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<const glm::dvec3> vertices,
                    std::span<ReflectionPoint> points, const SearchOptions& options) {
     const Doubles tag;
@@ -77,7 +79,6 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             point = choose(entry.enters, met, point);
             normal = choose(entry.enters, (num(1) / root(dot(m, m))) * m, normal);
         }
-        const Num3 toEye = eyes - point, toVertex = v - point;
         Points at, up, again;
         Values path, error, lookups, hidden, retried;
         MD failed = hn::And(visible, descent.best.error > num(options.tolerance * options.tolerance));
@@ -100,6 +101,7 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             error.store(descent.best.error);
             lookups.store(descent.lookups);
         }
+        const Num3 toEye = eyes - point, toVertex = v - point;
         at.store(point);
         up.store(normal);
         path.store(root(dot(toEye, toEye)) + root(dot(toVertex, toVertex)));
