@@ -35,13 +35,15 @@ int benchChrome(const Options& options) {
     const ChromeStage stage(world);
     const OffscreenContext context;
     ResultFile results("chrome", std::string(programVersion), context.renderer());
-    Progress progress("chrome", 5 + 3 * stage.parts.size() + chromePictureSteps, options.quiet);
+    Progress progress("chrome", 6 + 3 * stage.parts.size() + chromePictureSteps, options.quiet);
     ChromeBenchOptions how;
     how.seed = options.seed;
     how.car = options.car;
     how.carLength = options.carLength;
     how.save = options.save;
     if (options.publishedSearch) how.vertex.published = reflection::PublishedOptions{};
+    how.searchOnGpu = options.chromeSearch == ChromeSearchOn::gpu ||
+                      (options.chromeSearch == ChromeSearchOn::automatic && !context.software());
     how.interrupted = [] { return interrupted(); };
     how.advance = [&progress] { progress.advance(); };
     std::vector<MirrorRows> parts;
@@ -53,6 +55,7 @@ int benchChrome(const Options& options) {
         return (options.part.empty() || options.part == part) && !how.stop();
     };
     if (wanted("search")) add(chromeSearches(how));
+    if (wanted("gpu")) add(chromeSearchesOnGpu(how));
     if (wanted("share")) add(chromeShares(stage, how));
     if (wanted("published")) add(publishedSearches(stage, how));
     if (wanted("still")) add(chromeStills(stage, how));

@@ -26,6 +26,7 @@ struct ChromeBenchOptions {
     std::optional<std::filesystem::path> car;   ///< GLB whose front is searched in place of the saloon's
     double carLength = 4.5;                     ///< metres
     std::optional<std::filesystem::path> save;  ///< pictures go here
+    bool searchOnGpu = false;                   ///< in pictures, where everything is searched for
     std::function<bool()> interrupted;
     std::function<void()> advance;  ///< told after each measurement
     bool stop() const { return interrupted && interrupted(); }
@@ -35,6 +36,10 @@ struct ChromeBenchOptions {
 /// this thread, how many lookups, what comes out, and the worst angle between bisector and normal of those
 /// found, computed anew. Needs no graphics.
 MirrorRows chromeSearches(const ChromeBenchOptions& options);
+
+/// The same on the graphics card, against the processor's search in double precision: how far points and
+/// virtual vertices lie apart as seen from the eye, and statuses that differ. Needs a context.
+MirrorRows chromeSearchesOnGpu(const ChromeBenchOptions& options);
 
 /// The share of vertices that is searched for, as in Estalella et al. 2005, figure 7: time, and how far
 /// vertices land from where they land with all of them searched for, and from where rays meet the exact

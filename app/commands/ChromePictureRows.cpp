@@ -31,6 +31,7 @@ struct Method {
     bool parallax = false;
     std::optional<double> share;  ///< of searches; nothing: environment maps alone
     bool published = false;
+    bool onGpu = false;
 };
 
 std::unique_ptr<MirrorStage> stageFor(const MirrorWorld& world, const Method& method,
@@ -44,6 +45,7 @@ std::unique_ptr<MirrorStage> stageFor(const MirrorWorld& world, const Method& me
         mesh.vertices.share = *method.share;
         if (method.published) mesh.vertices.published = reflection::PublishedOptions{};
         stage->setChrome(mesh, false);
+        if (method.onGpu) stage->searchChromeOnGpu();
     }
     return stage;
 }
@@ -140,13 +142,15 @@ MirrorRows chromePictures(const ChromeStage& stage, const ChromeBenchOptions& op
     const auto view = [&](const std::vector<glm::vec3>& pixels) {
         return reflection::ImageView{options.picture.x, options.picture.y, pixels};
     };
-    const std::vector<Method> methods{{"map", mapFace, false, {}, false},
-                                      {"map with parallax", mapFace, true, {}, false},
-                                      {"re-rendered", perfectFace, false, {}, false},
-                                      {"re-rendered with parallax", perfectFace, true, {}, false},
-                                      {"chrome, all searched", mapFace, true, 1.0, false},
-                                      {"chrome, 9.6 %", mapFace, true, 0.096, false},
-                                      {"chrome, as published", mapFace, true, 1.0, true}};
+    const std::vector<Method> methods{
+        {"map", mapFace, false, {}, false},
+        {"map with parallax", mapFace, true, {}, false},
+        {"re-rendered", perfectFace, false, {}, false},
+        {"re-rendered with parallax", perfectFace, true, {}, false},
+        {options.searchOnGpu ? "chrome, all searched, gpu" : "chrome, all searched", mapFace, true, 1.0,
+         false, options.searchOnGpu},
+        {"chrome, 9.6 %", mapFace, true, 0.096, false},
+        {"chrome, as published", mapFace, true, 1.0, true}};
     constexpr std::size_t rerendered = 2;
     // The same maps, kept and re-rendered, without chrome: what a map costs, and what chrome adds.
     const auto kept = stageFor(world, methods[1], options), again = stageFor(world, methods[1], options),

@@ -22,18 +22,6 @@ namespace {
 /// so many vertices fewer.
 constexpr std::size_t fewer = 50;
 
-/// Points around a shape, from its surface to six radii away, evenly spread over the magnitudes.
-std::vector<glm::dvec3> around(const ChromeShape& shape, std::size_t count, stability::SeededRandom& random) {
-    std::vector<glm::dvec3> points;
-    while (points.size() < count) {
-        const glm::dvec3 d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-        const double length = glm::length(d);
-        if (length < 0.1 || length > 1) continue;
-        points.push_back(shape.centre + shape.radius * random.magnitude(0.5, 6) / length * d);
-    }
-    return points;
-}
-
 double angleAt(const glm::dvec3& eye, const glm::dvec3& vertex, const ReflectionPoint& r) {
     const glm::dvec3 h = glm::normalize(eye - r.point) + glm::normalize(vertex - r.point);
     return std::atan2(glm::length(glm::cross(h, r.normal)), glm::dot(h, r.normal));
@@ -70,7 +58,7 @@ MirrorRows chromeSearches(const ChromeBenchOptions& options) {
     stability::SeededRandom random(options.seed, 31);
     for (const ChromeShape& shape : chromeShapes(options.car, options.carLength)) {
         const glm::dvec3 eye = shape.centre + 4 * shape.radius * shape.from;
-        const std::vector<glm::dvec3> all = around(shape, options.vertices, random);
+        const std::vector<glm::dvec3> all = verticesAround(shape, options.vertices, random);
         // Parts that are cut: convex pieces and concave ones each as one, by far the larger ones first.
         for (const Bend bend : {Bend::convex, Bend::concave}) {
             if (options.stop()) return out;

@@ -105,4 +105,16 @@ std::vector<ChromeShape> chromeShapes(const std::optional<std::filesystem::path>
     return shapes;
 }
 
+std::vector<glm::dvec3> verticesAround(const ChromeShape& shape, std::size_t count,
+                                       stability::SeededRandom& random) {
+    std::vector<glm::dvec3> points;
+    while (points.size() < count) {
+        const glm::dvec3 d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+        const double length = glm::length(d);
+        if (length < 0.1 || length > 1) continue;
+        points.push_back(shape.centre + shape.radius * random.magnitude(0.5, 6) / length * d);
+    }
+    return points;
+}
+
 }  // namespace app

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/stability/SeededRandom.h"
 #include "city/geometry/Mesh.h"
 #include "reflection/chrome/ReflectorPieces.h"
 
@@ -24,5 +26,9 @@ struct ChromeShape {
 /// built-in saloon's, or that of a GLB scaled to a length in metres. Throws std::runtime_error for a file
 /// that cannot be read.
 std::vector<ChromeShape> chromeShapes(const std::optional<std::filesystem::path>& car, double carLength);
+
+/// Points around a shape, from half its ball's radius to six radii away, evenly spread over the magnitudes.
+std::vector<glm::dvec3> verticesAround(const ChromeShape& shape, std::size_t count,
+                                       stability::SeededRandom& random);
 
 }  // namespace app

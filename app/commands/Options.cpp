@@ -267,8 +267,12 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
     if (groups & searchOption)
         parser.add_option("--part", o.part, "one part of the measurement alone")
             ->type_name("NAME")
-            ->check(CLI::IsMember(std::vector<std::string>{"search", "share", "published", "still", "frame",
-                                                           "picture", "none"}));
+            ->check(CLI::IsMember(std::vector<std::string>{"search", "gpu", "share", "published", "still",
+                                                           "frame", "picture", "none"}));
+    if (groups & searchOption)
+        addNamed(parser, "--chrome-search", o.chromeSearch, chromeSearchNames,
+                 "who searches where pictures with chrome search for everything (default auto: gpu, but cpu "
+                 "where OpenGL is software)");
     if (groups & saveOption)
         parser.add_option("--save", o.save, "folder for pictures of what was measured")
             ->type_name("DIR")

@@ -16,6 +16,14 @@
 
 namespace app {
 
+/// Who searches for reflection points in close chrome.
+enum class ChromeSearchOn : std::uint8_t {
+    automatic,  ///< "auto": the graphics card; the processor where that draws as well
+    cpu,
+    gpu,
+};
+inline constexpr std::array<std::string_view, 3> chromeSearchNames{"auto", "cpu", "gpu"};
+
 /// What the command line asked for: plain data, every number finite and within the range that its --help
 /// names.
 struct Options {
@@ -64,6 +72,7 @@ struct Options {
     std::optional<std::filesystem::path> save;  ///< folder for what was measured, as pictures
     bool publishedSearch = false;               ///< --search paper
     std::string part;                           ///< --part; empty: all of a measurement
+    ChromeSearchOn chromeSearch = ChromeSearchOn::automatic;
 
     /// --gpu-map-memory in bytes.
     std::size_t gpuMapBytes() const { return static_cast<std::size_t>(gpuMapMegabytes * 1048576); }
@@ -100,7 +109,7 @@ enum OptionGroup : unsigned {
     errorOptions = 1u << 21,   ///< --error --fixed-quality
     saveOption = 1u << 23,     ///< --save
     bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
-    searchOption = 1u << 25,   ///< --search --part
+    searchOption = 1u << 25,   ///< --search --part --chrome-search
     chromeOptions = 1u << 26,  ///< --chrome --chrome-share
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,

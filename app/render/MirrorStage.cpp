@@ -95,6 +95,10 @@ void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options, bool 
     for (std::size_t c = 0; c < my.world.curved.size(); ++c) my.renderer.setLeftOut(c, my.chrome->closeTo(c));
 }
 
+void MirrorStage::searchChromeOnGpu() {
+    if (impl_->chrome) impl_->chrome->searchOnGpu();
+}
+
 const ChromeFrame& MirrorStage::chromeFrame() const {
     return impl_->chromeFrame;
 }

@@ -29,6 +29,8 @@ class MirrorStage {
     /// From now on curved reflectors show what is close by searched reflection points. Environment maps then
     /// leave it out. `concave`: see MirrorWorldChrome.
     void setChrome(const reflection::VirtualMeshOptions& options, bool concave = true);
+    /// After setChrome, before a frame: see MirrorWorldChrome.
+    void searchChromeOnGpu();
     const ChromeFrame& chromeFrame() const;  ///< of the last frame
 
     /// Linear radiance, row 0 at the top. Waits.

@@ -10,6 +10,7 @@
 
 #include "reflection/chrome/ReflectorPieces.h"
 #include "reflection/gl/ChromeLayer.h"
+#include "reflection/gl/ChromeSearchMesh.h"
 #include "reflection/gl/Program.h"
 
 namespace app {
@@ -84,6 +85,7 @@ struct MirrorWorldChrome::Impl {
         std::vector<Object> objects;
         gl::Buffer vertices, indices;
         gl::VertexArray array;
+        std::optional<reflection::ChromeSearchMesh> onGpu;  ///< all objects, where the GPU searches
     };
     struct Chrome {
         std::vector<bool> close;
@@ -96,11 +98,18 @@ struct MirrorWorldChrome::Impl {
     std::vector<std::vector<float>> colours;  ///< of each object's corners
     std::optional<gl::ChromeLayer> layer;
     gl::Program virtualObjects, apply;
+    bool searchOnGpu = false;
+    std::optional<reflection::ChromeSearch> search;
+    gl::Program searched;  ///< draws what the GPU has searched for
 
     void makeGlObjects() {
         if (layer) return;
         layer.emplace();
         virtualObjects = gl::Program::fromFiles({"chrome.vert", "chrome.frag"});
+        if (searchOnGpu) {
+            search.emplace();
+            searched = gl::Program::fromFiles({"chrome.vert", "chrome.frag"}, {"WITH_STATUS"});
+        }
         apply = gl::Program::fromFiles({"mirror_world.vert", "chrome_apply.frag"});
         for (Chrome& c : chrome)
             for (Piece& p : c.pieces) {
@@ -111,13 +120,22 @@ struct MirrorWorldChrome::Impl {
                     .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
                     .indices(p.indices.name());
                 for (Object& o : p.objects) o.drawn.emplace(std::vector<int>{3});
+                // On concave pieces images tear, which the processor's meshes find and leave out.
+                if (!searchOnGpu || p.piece.bend == reflection::Bend::concave) continue;
+                p.onGpu.emplace(p.piece.built.map, 3);
+                for (const Object& o : p.objects) {
+                    std::vector<glm::vec3> positions;
+                    for (const LitMesh::Corner& corner : world.objects[o.index].corners)
+                        positions.push_back(corner.position);
+                    p.onGpu->add(positions, world.objects[o.index].indices, colours[o.index]);
+                }
             }
     }
 };
 
 MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options,
                                      bool concave)
-    : impl_(new Impl{world, options, {}, {}, {}, {}, {}}) {
+    : impl_(new Impl{world, options, {}, {}, {}, {}, {}, false, {}, {}}) {
     for (const LitMesh& m : world.objects) {
         std::vector<float>& floats = impl_->colours.emplace_back();
         for (const LitMesh::Corner& c : m.corners)
@@ -156,6 +174,10 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
 }
 MirrorWorldChrome::~MirrorWorldChrome() = default;
 
+void MirrorWorldChrome::searchOnGpu() {
+    impl_->searchOnGpu = true;
+}
+
 const std::vector<bool>& MirrorWorldChrome::closeTo(std::size_t curved) const {
     return impl_->chrome[curved].close;
 }
@@ -186,7 +208,15 @@ ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::
             if (!faces(p.piece.mesh, glm::vec3(view.eye))) continue;
             ++frame.jobs;
             const auto start = std::chrono::steady_clock::now();
+            if (p.onGpu) {
+                p.onGpu->update(*my.search, view.eye);
+                frame.meshes += p.objects.size();
+                frame.vertices += p.onGpu->vertexCount();
+                frame.searched += p.onGpu->vertexCount();
+                frame.triangles += p.onGpu->triangleCount();
+            }
             for (Impl::Object& o : p.objects) {
+                if (p.onGpu) break;
                 const reflection::VirtualCounts counts =
                     o.mesh.update(p.piece.built.map, view.eye, glm::dmat4(1), options);
                 ++frame.meshes;
@@ -202,9 +232,12 @@ ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::
             glDisable(GL_CULL_FACE);
             glDisable(GL_CLIP_DISTANCE0);
             glDisable(GL_CLIP_DISTANCE1);
-            my.virtualObjects.set("clipFromVirtual", clip);
-            my.virtualObjects.use();
+            const gl::Program& program = p.onGpu ? my.searched : my.virtualObjects;
+            program.set("clipFromVirtual", clip);
+            program.use();
+            if (p.onGpu) p.onGpu->draw();
             for (Impl::Object& o : p.objects) {
+                if (p.onGpu) break;
                 o.drawn->upload(o.mesh, my.colours[o.index]);
                 o.drawn->draw();
             }

@@ -29,6 +29,11 @@ class MirrorWorldChrome {
                       bool concave = true);
     ~MirrorWorldChrome();
 
+    /// Before the first frame: the graphics card searches for what convex pieces show, for every vertex of
+    /// objects cut finely beforehand (reflection::ChromeSearchMesh), and draws it without anything being read
+    /// back; `searchMilliseconds` is then what asking for it takes.
+    void searchOnGpu();
+
     /// Which objects a reflector shows as virtual objects; its environment map need not hold them.
     const std::vector<bool>& closeTo(std::size_t curved) const;
 

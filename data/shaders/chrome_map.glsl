@@ -26,6 +26,7 @@ layout(std140, binding = 0) uniform SearchBlock {
     uint concave;
     uint eyeInside;
     uint normalSide;
+    uint hasCovered;  // a second table, of the points that the part itself covers
 };
 
 layout(std430, binding = 0) readonly restrict buffer Corners { vec4 corners[]; };
@@ -134,13 +135,13 @@ real gaugeAt(real3 p, real3 along, out real slope) {
     return at.largest * surface.q;
 }
 
-/// Direction, stretch taken out, where the table finds a normal.
-real3 startOfNormal(real3 normal) {
+/// Direction, stretch taken out, where a table finds a normal; 1: the one of points that the part itself covers.
+real3 startOfNormal(real3 normal, uint table) {
     OnCube at = onCube(normal);
     real side = real(normalSide);
     uint column = uint(clamp(floor((at.s + real(1)) * real(0.5) * side), real(0), side - real(1)));
     uint row = uint(clamp(floor((at.t + real(1)) * real(0.5) * side), real(0), side - real(1)));
-    return real3(directionOfNormal[(at.face * normalSide + row) * normalSide + column].xyz);
+    return real3(directionOfNormal[((6u * table + at.face) * normalSide + row) * normalSide + column].xyz);
 }
 
 /// SearchLanes-inl.h's Judged. `uncertain`: radians, seen from the eye, by which the point moves for each unit that h's
@@ -227,18 +228,24 @@ Judged judge(real3 eye, real3 vertex, real3 direction, bool convex) {
     return r;
 }
 
+/// SearchLanes-inl.h's mostHalvings.
+const int mostHalvings = 10;
+
 /// Newton's steps, each kept only where the angle shrinks and halved otherwise, until `enough` (a squared sine), until
 /// steps are below `still`, or to the end of the lookups.
 Judged descend(real3 eye, real3 vertex, Judged start, bool convex, real enough, real still, int lookups) {
     Judged best = start;
     real3 step = best.step;
-    for (int k = 1; k < lookups && best.error > enough; ++k) {
+    int halvings = 0;
+    for (int k = 1; k < lookups && best.error > enough && !(convex && halvings >= mostHalvings); ++k) {
         Judged next = judge(eye, vertex, best.place + step, convex);
         if (next.error < best.error) {
             best = next;
             step = next.step;
+            halvings = 0;
         } else {
             step *= real(0.5);
+            ++halvings;
         }
         if (!(max(abs(step.x), max(abs(step.y), abs(step.z))) > still)) break;
     }
@@ -348,10 +355,15 @@ bool planeMirror(real3 foot, real3 normal, real3 eye, real3 vertex, out real3 mi
 const real closeGauge = real(1.5);
 const real poorStart = real(0.5);
 
+/// Of the bisector seen from the centre.
+real3 startFromTable(real3 vertex, uint table) {
+    return startOfNormal(real3(eyeUnit.xyz) + vertex / max(sqrt(dot(vertex, vertex)), real(1e-30)), table);
+}
+
 /// Direction from the centre to start from, stretch taken out.
 real3 startFor(real3 eye, real3 vertex) {
     real3 by = stretchBy();
-    real3 start = startOfNormal(real3(eyeUnit.xyz) + vertex / max(sqrt(dot(vertex, vertex)), real(1e-30)));
+    real3 start = startFromTable(vertex, 0u);
     real3 mirror;
     real eyeGauge = real(eyeInMap.w);
     if (eyeGauge < closeGauge && planeMirror(real3(eyeFoot.xyz), real3(eyeNormal.xyz), eye, vertex, mirror))

@@ -38,7 +38,7 @@ void writeResult(uint index, uint status, real3 eye, real3 vertex, real3 point, 
     real scale = real(axisX.w);
     // Where the bisector is the normal, the mirrored vertex lies on the line of sight: this has fewer roundings.
     real3 image = point - eye;
-    if (residual > real(0))
+    if (status == statusFound)
         image *= path / max(sqrt(dot(image, image)), tiny);
     else
         image = vertex - eye - real(2) * dot(vertex - point, normal) * normal;

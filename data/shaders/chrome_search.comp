@@ -86,6 +86,18 @@ void search(uint index) {
 #ifdef REAL_IS_DOUBLE
     best = descend(eye, vertex, best, true, enough, still, mostLookups);
     bool settled = best.error <= enough;
+    if (!settled && hasCovered != 0u) {
+        // What has run into the closing surface's creases starts once more, from the part itself.
+        Judged again = descend(eye, vertex, judge(eye, vertex, startFromTable(vertex, 1u), true), true, enough, still,
+                               mostLookups);
+        if (again.error <= enough && again.error < best.error) {
+            best = again;
+            settled = true;
+        } else if (coverageAt(best.point / by) < real(0.5) && coverageAt(again.point / by) < real(0.5)) {
+            writeResult(index, statusUnreflected, eye, vertex, best.point, best.normal, angleOf(best.error), best.path);
+            return;
+        }
+    }
 #else
     // Stops a little above what rounding allows at this distance; what counts is the angle seen from the eye.
     best = descend(eye, vertex, best, true, squared(real(2) * roundingOfH), still, mostLookups);

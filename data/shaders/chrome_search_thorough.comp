@@ -93,7 +93,7 @@ void writeUnfound(uint index, real3 eye, real3 vertex) {
     real slope;
     bool outside = gaugeAt(from / by, real3(1, 0, 0), slope) > real(1);
     uint status = statusUnreflected;
-    real3 point = startOfNormal(real3(eyeUnit.xyz) + vertex / max(sqrt(dot(vertex, vertex)), tiny));
+    real3 point = startFromTable(vertex, 0u);
     if (outside) {
         Entry entry = enter(from / by, to / by);
         real3 met = (from + entry.at * (to - from)) / by;

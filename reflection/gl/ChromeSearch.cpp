@@ -23,8 +23,7 @@ constexpr std::size_t mostGroups = 32768;
 struct SearchBlock {
     glm::dvec4 axisX, axisY, axisZ, eye, eyeUnit, eyeFoot, eyeNormal, stretch;
     glm::vec2 radii;
-    std::uint32_t cells = 0, vertexCount = 0, concave = 0, eyeInside = 0, normalSide = 0;
-    std::uint32_t padding = 0;
+    std::uint32_t cells = 0, vertexCount = 0, concave = 0, eyeInside = 0, normalSide = 0, hasCovered = 0;
 };
 static_assert(sizeof(SearchBlock) == 288);
 
@@ -61,6 +60,7 @@ SearchBlock blockFor(const ReflectorMap& map, const glm::dvec3& at, std::size_t 
     block.concave = map.bend() == Bend::concave ? 1 : 0;
     block.eyeInside = map.bend() == Bend::convex && !(under.gauge > 1) ? 1 : 0;
     block.normalSide = ReflectorMap::normalTableSide;
+    block.hasCovered = map.coveredNormalTable().empty() ? 0 : 1;
     return block;
 }
 
@@ -73,6 +73,7 @@ ChromeMapBuffer::ChromeMapBuffer(const ReflectorMap& map) : map_(map) {
         coverage[i / 4] |= static_cast<std::uint32_t>(map.coverage()[i]) << (8 * (i % 4));
     std::vector<glm::vec4> normals;
     for (const glm::vec3& d : map.normalTable()) normals.emplace_back(d, 0.0f);
+    for (const glm::vec3& d : map.coveredNormalTable()) normals.emplace_back(d, 0.0f);
     corners_ = gl::Buffer::filled(map.corners());
     coverage_ = gl::Buffer::filled(std::span<const std::uint32_t>(coverage));
     normals_ = gl::Buffer::filled(std::span<const glm::vec4>(normals));

@@ -56,7 +56,9 @@ class ChromeMapBuffer {
 ///
 /// Nothing is read back or waited for: lists of what is left stay on the GPU, dispatches are indirect.
 /// Against the processor's search: points and virtual vertices within 1e-4 radians as seen from the eye, the
-/// same statuses but where the outline passes through the vertex to within a double's rounding.
+/// same statuses but where the outline passes through the vertex to within a double's rounding and, on open
+/// pieces, where the closing surface's creases show a vertex a second time: which point is reached may hang
+/// on the last bit then (one of 16,000 on a saloon's front).
 ///
 /// Needs a current GL 4.5 context in every call and at destruction.
 class ChromeSearch {
