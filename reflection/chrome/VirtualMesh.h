@@ -23,9 +23,10 @@ struct VirtualMeshOptions {
     double coneCosine = -2;
 };
 
-/// A vertex that was put in the middle of an edge.
+/// A vertex that was put on an edge.
 struct MiddleVertex {
     std::uint32_t a, b;  ///< vertices before it, of the mesh or middles themselves
+    float share = 0.5f;  ///< of the way from a to b
 };
 
 /// A mesh's image in one piece of a reflector, ready to be drawn: its triangles with as many vertices in the
@@ -39,18 +40,22 @@ class VirtualMesh {
                 const VirtualMeshOptions& options);
 
     /// Moves the image; see VirtualObject::update. Edges are halved until their middles lie within the
-    /// tolerance of where they are drawn, both triangles at an edge alike, so that no cracks open. Triangles
-    /// of which every vertex is hidden are left out, and so are those in which the image is still torn after
-    /// the last halving (on concave pieces, where neighbouring vertices may be seen at different points).
-    /// Cost: the vertices', and a search for each edge that is long on screen.
+    /// tolerance of where they are drawn, both triangles at an edge alike, so that no cracks open. On convex
+    /// pieces edges with one hidden end are cut where the piece's outline hides them, and what lies behind is
+    /// left out: a hidden vertex's own image may be anywhere, behind the eye too, and a triangle drawn
+    /// straight to it would cover what it never reaches. Places of such cuts are drawn the tolerance past the
+    /// outline, with the status `hidden`. On concave pieces triangles of which every vertex is hidden are
+    /// left out, and so are those in which the image is still torn after the last halving (neighbouring
+    /// vertices may be seen at different points there).
+    /// Cost: the vertices', a search for each edge that is long on screen and about six for each that is cut.
     VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
                          const VirtualMeshOptions& options);
 
     std::size_t meshVertices() const { return positions.size(); }
     /// Of the mesh, then of middles.
     std::span<const VirtualVertex> vertices() const { return image; }
-    /// The middles, in the order in which they follow the mesh's vertices: what else belongs to a vertex
-    /// (normal, colour) is the mean of its ends'.
+    /// Vertices on edges, in the order in which they follow the mesh's vertices: what else belongs to a vertex
+    /// (normal, colour) is mixed from its ends'.
     std::span<const MiddleVertex> middles() const { return added; }
     std::span<const std::uint32_t> indices() const { return drawn; }
 

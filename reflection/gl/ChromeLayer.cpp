@@ -49,7 +49,7 @@ void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertic
     for (const MiddleVertex& m : mesh.middles())
         for (std::size_t k = 0; k < stride_; ++k) {
             const float a = all_[m.a * stride_ + k], b = all_[m.b * stride_ + k];
-            all_.push_back(0.5f * (a + b));
+            all_.push_back(a + m.share * (b - a));
         }
     places_.replace(mesh.vertices());
     values_.replace(std::span<const float>(all_));

@@ -42,7 +42,7 @@ class ChromeMesh {
     explicit ChromeMesh(std::vector<int> attributes);
 
     /// Takes an updated mesh over. `ofVertices`: the host's floats for the mesh's own vertices; those of
-    /// middles are the means of their ends'.
+    /// middles are mixed from their ends'.
     void upload(const VirtualMesh& mesh, std::span<const float> ofVertices);
     /// Draws with the program in use.
     void draw() const;

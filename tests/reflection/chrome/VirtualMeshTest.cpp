@@ -34,7 +34,8 @@ double worstBend(const VirtualMesh& mesh, const std::vector<glm::dvec3>& places,
 
 std::vector<glm::dvec3> placesOf(const VirtualMesh& mesh, const std::vector<glm::vec3>& positions) {
     std::vector<glm::dvec3> places(positions.begin(), positions.end());
-    for (const MiddleVertex& m : mesh.middles()) places.push_back(0.5 * (places[m.a] + places[m.b]));
+    for (const MiddleVertex& m : mesh.middles())
+        places.push_back(places[m.a] + static_cast<double>(m.share) * (places[m.b] - places[m.a]));
     return places;
 }
 
@@ -104,6 +105,40 @@ TEST(VirtualMesh, LeavesNoCracksAndCoversTheMesh) {
     EXPECT_GT(open, 4);
     EXPECT_GT(area, 14);
     EXPECT_LE(area, 16.0001);
+}
+
+TEST(VirtualMesh, BigTrianglesWithHiddenCornersCoverOnlyWhatTheyReach) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 100), {0, 0, 0}, Bend::convex).map;
+    const glm::dvec3 eye(0, -3, .6);
+    // One corner is seen, two are hidden behind the ball; and the other way round.
+    const std::vector<glm::vec3> corners{{1.5f, -.5f, -.6f}, {.2f, 3, -.6f}, {-.2f, 2, -.6f}, {2, 3, -.6f}};
+    const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 3, 1};
+    VirtualMeshOptions options;
+    options.mostHalvings = 8;
+    VirtualMesh mesh(corners, triangles, options);
+    mesh.update(map, eye, glm::dmat4(1), options);
+    EXPECT_EQ(mesh.vertices()[0].status, ReflectionStatus::found);
+    EXPECT_EQ(mesh.vertices()[1].status, ReflectionStatus::hidden);
+    EXPECT_EQ(mesh.vertices()[2].status, ReflectionStatus::hidden);
+    EXPECT_EQ(mesh.vertices()[3].status, ReflectionStatus::found);
+    const std::vector<glm::dvec3> places = placesOf(mesh, corners);
+    const double outline = std::asin(.4 / glm::length(eye));
+    ASSERT_GT(mesh.indices().size(), 30U);
+    for (std::size_t k = 0; k + 2 < mesh.indices().size(); k += 3) {
+        glm::dvec3 place(0), drawn(0);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t v = mesh.indices()[k + i];
+            place += places[v] / 3.0;
+            drawn += glm::dvec3(mesh.vertices()[v].fromEye) / 3.0;
+            const glm::dvec3 sight = glm::normalize(glm::dvec3(mesh.vertices()[v].fromEye));
+            EXPECT_LT(std::acos(glm::dot(sight, glm::normalize(-eye))), outline + 2 * options.tolerance);
+        }
+        ReflectionPoint r;
+        findReflectionPoints(map, eye, std::span(&place, 1), std::span(&r, 1));
+        if (r.status != ReflectionStatus::found) continue;
+        EXPECT_LT(glm::length(glm::normalize(drawn) - glm::normalize(r.point - eye)), 4 * options.tolerance);
+    }
 }
 
 TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
