@@ -232,6 +232,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         // The ground is cut off at the patch alone: its edges are as long as the patch.
         virtualOptions.mostHalvings = 9;
         virtualOptions.tolerance = options.tolerance / static_cast<double>(pass.pixelsPerRadian);
+        virtualOptions.vertices.cellTolerance = virtualOptions.tolerance;
         const double distance = glm::length(eye);
         if (distance > 1.1 * job.radius) {
             const double sine = job.radius / distance;

@@ -3,9 +3,11 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <map>
 #include <optional>
 
 #include "reflection/chrome/ReflectorPieces.h"
@@ -33,6 +35,31 @@ city::Mesh asMesh(const LitMesh& lit) {
     }
     mesh.indices = lit.indices;
     return mesh;
+}
+
+/// An object's corners, each place and colour once: triangles that meet without a crease share searches.
+struct Welded {
+    std::vector<glm::vec3> positions;
+    std::vector<float> colours;
+    std::vector<std::uint32_t> indices;
+};
+
+Welded weld(const LitMesh& mesh) {
+    Welded out;
+    std::map<std::array<float, 6>, std::uint32_t> known;
+    std::vector<std::uint32_t> ids;
+    for (const LitMesh::Corner& c : mesh.corners) {
+        const glm::vec3 &p = c.position, &l = c.colour;
+        const auto [at, added] = known.try_emplace({p.x, p.y, p.z, l.r, l.g, l.b},
+                                                   static_cast<std::uint32_t>(out.positions.size()));
+        if (added) {
+            out.positions.push_back(p);
+            out.colours.insert(out.colours.end(), {l.r, l.g, l.b});
+        }
+        ids.push_back(at->second);
+    }
+    for (const std::uint32_t i : mesh.indices) out.indices.push_back(ids[i]);
+    return out;
 }
 
 double distanceTo(const city::Aabb& box, const glm::dvec3& p) {
@@ -95,7 +122,7 @@ struct MirrorWorldChrome::Impl {
     const MirrorWorld& world;
     reflection::VirtualMeshOptions options;
     std::vector<Chrome> chrome;
-    std::vector<std::vector<float>> colours;  ///< of each object's corners
+    std::vector<Welded> objects;  ///< the world's
     std::optional<gl::ChromeLayer> layer;
     gl::Program virtualObjects, apply;
     bool searchOnGpu = false;
@@ -124,10 +151,8 @@ struct MirrorWorldChrome::Impl {
                 if (!searchOnGpu || p.piece.bend == reflection::Bend::concave) continue;
                 p.onGpu.emplace(p.piece.built.map, 3);
                 for (const Object& o : p.objects) {
-                    std::vector<glm::vec3> positions;
-                    for (const LitMesh::Corner& corner : world.objects[o.index].corners)
-                        positions.push_back(corner.position);
-                    p.onGpu->add(positions, world.objects[o.index].indices, colours[o.index]);
+                    const Welded& object = objects[o.index];
+                    p.onGpu->add(object.positions, object.indices, object.colours);
                 }
             }
     }
@@ -136,11 +161,8 @@ struct MirrorWorldChrome::Impl {
 MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options,
                                      bool concave)
     : impl_(new Impl{world, options, {}, {}, {}, {}, {}, false, {}, {}}) {
-    for (const LitMesh& m : world.objects) {
-        std::vector<float>& floats = impl_->colours.emplace_back();
-        for (const LitMesh::Corner& c : m.corners)
-            floats.insert(floats.end(), {c.colour.r, c.colour.g, c.colour.b});
-    }
+    std::vector<Welded>& objects = impl_->objects;
+    for (const LitMesh& m : world.objects) objects.push_back(weld(m));
     for (const MirrorWorld::Curved& curved : world.curved) {
         Impl::Chrome& chrome = impl_->chrome.emplace_back();
         chrome.close.assign(world.objects.size(), false);
@@ -161,12 +183,8 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
             made.piece = std::move(piece);
             for (std::size_t o = 0; o < world.objects.size(); ++o) {
                 if (!chrome.close[o]) continue;
-                std::vector<glm::vec3> positions;
-                for (const LitMesh::Corner& c : world.objects[o].corners) positions.push_back(c.position);
                 made.objects.push_back(
-                    {o,
-                     reflection::VirtualMesh(std::move(positions), world.objects[o].indices, options),
-                     {}});
+                    {o, reflection::VirtualMesh(objects[o].positions, objects[o].indices, options), {}});
             }
         }
         if (chrome.pieces.empty()) chrome.close.assign(world.objects.size(), false);
@@ -238,7 +256,7 @@ ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::
             if (p.onGpu) p.onGpu->draw();
             for (Impl::Object& o : p.objects) {
                 if (p.onGpu) break;
-                o.drawn->upload(o.mesh, my.colours[o.index]);
+                o.drawn->upload(o.mesh, my.objects[o.index].colours);
                 o.drawn->draw();
             }
             glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);

@@ -25,6 +25,11 @@ struct VirtualOptions {
     /// Vertices in cells whose nodes do not all have the same status are searched for themselves (beyond the
     /// share): across an outline the virtual image moves too fast for a cell.
     bool exactAtOutlines = true;
+    /// Angle, seen from the eye, by which a cell's vertices may lie off: in each cell that covers enough on
+    /// screen to bend by as much, the vertex farthest from the nodes is searched for, and all others if it is
+    /// off by more (beyond the share): a quarter of a pixel of a 720-row view of 60 degrees, as others may
+    /// lie farther off. Infinity: cells are taken as they are, as published.
+    double cellTolerance = 0.25 * 1.155 / 720;
     SearchOptions search = {};
     /// Set: vertices are searched for as published instead, for comparison; see
     /// findReflectionPointsAsPublished.
@@ -38,13 +43,14 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
 
 /// How an update went.
 struct VirtualCounts {
-    std::size_t vertices = 0, searched = 0, nodes = 0, atOutlines = 0;
+    std::size_t vertices = 0, searched = 0, nodes = 0, atOutlines = 0, inBentCells = 0;
     std::size_t found = 0, hidden = 0, unreflected = 0;  ///< of the searched ones
     std::size_t lookups = 0;
 };
 
 /// A mesh near a reflector whose image in one of the reflector's pieces is kept up to date. Source: Estalella
-/// et al. 2005, sections 3 and 5; departures: outlines are searched exactly.
+/// et al. 2005, sections 3 and 5; departures: outlines and cells
+/// in which the image bends are searched exactly.
 class VirtualObject {
   public:
     /// Positions in the mesh's frame, metres; those that are not finite become invalid virtual vertices.
@@ -59,7 +65,12 @@ class VirtualObject {
   private:
     VirtualOptions settings;
     std::vector<glm::vec3> points;
+    void searchExactly(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
+                       VirtualCounts& counts);
+
     std::vector<std::uint32_t> broken;  ///< vertices that are not finite
+    std::vector<std::uint32_t> probes;  ///< for each cell its vertex that is farthest from the nodes
+    std::vector<char> searchCell;       ///< for each cell
     std::optional<BoundingGrid> grid;
     std::vector<glm::dvec3> asked;
     std::vector<ReflectionPoint> answers;

@@ -89,6 +89,29 @@ TEST(VirtualObject, AShareOfSearchesPlacesTheMeshWithinAPixel) {
     }
 }
 
+TEST(VirtualObject, SearchesVerticesThemselvesWhereCellsAreTooLarge) {
+    const Table table;
+    const glm::dmat4 close = table.at({.19, -.1, 0});
+    const std::vector<glm::vec3> coarse = positionsOf(meshOf(roundedBox({.06, .06, .08}, 4), 12));
+    VirtualObject all(coarse, {.share = 1}), some(coarse, {.share = 0.041}),
+        careless(coarse, {.share = 0.041, .cellTolerance = INFINITY});
+    all.update(table.map, table.eye, close);
+    const VirtualCounts counts = some.update(table.map, table.eye, close);
+    const VirtualCounts few = careless.update(table.map, table.eye, close);
+    EXPECT_GT(counts.inBentCells, 20U);
+    EXPECT_EQ(few.inBentCells, 0U);
+    EXPECT_EQ(counts.searched, counts.nodes + counts.atOutlines + counts.inBentCells);
+    double worst = 0, worstCareless = 0;
+    for (std::size_t k = 0; k < coarse.size(); ++k) {
+        if (all.vertices()[k].status != ReflectionStatus::found) continue;
+        worst = std::max(worst, pixelsApart(all.vertices()[k].fromEye, some.vertices()[k].fromEye));
+        worstCareless =
+            std::max(worstCareless, pixelsApart(all.vertices()[k].fromEye, careless.vertices()[k].fromEye));
+    }
+    EXPECT_LT(worst, 1.0);
+    EXPECT_GT(worstCareless, 2.0);
+}
+
 TEST(VirtualObject, SearchesVerticesThemselvesWhereTheReflectorsOutlineCrossesTheMesh) {
     const Table table;
     const glm::dmat4 behind = table.at({.03, .35, .1});
