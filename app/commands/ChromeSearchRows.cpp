@@ -135,7 +135,7 @@ MirrorRows publishedSearches(const ChromeStage& stage, const ChromeBenchOptions&
     const glm::dvec3 eye = stage.world.eye;
     const PixelPlace place(stage.world.view(options.size));
     constexpr double degrees = 57.29577951308232;
-    for (const ChromePart& part : stage.parts) {
+    for (const StagedChrome& part : stage.parts) {
         if (options.stop()) return out;
         // The paper's search is for convex pieces; on concave ones it walks to one of the points.
         const reflection::ReflectorPiece* piece =

@@ -1,10 +1,12 @@
 #include "app/commands/ChromeShapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
 #include "app/commands/ChromeStage.h"
+#include "app/frame/ChromeParts.h"
 #include "app/mirrors/Lathe.h"
 #include "vehicles/import/LoadVehicle.h"
 #include "vehicles/models/Fleet.h"
@@ -96,6 +98,15 @@ std::vector<ChromeShape> chromeShapes(const std::optional<std::filesystem::path>
                              {1, -2, 3}));
     const vehicles::VehicleModel model =
         car ? vehicles::loadVehicle(*car, static_cast<float>(carLength)) : vehicles::builtInFleet()[1];
+    // The widest piece of chrome in front: a bumper, where it is one whole body.
+    std::vector<city::Mesh> components = chromeComponents(model.levels.front().body);
+    std::erase_if(components,
+                  [](const city::Mesh& m) { return m.vertices.empty() || m.bounds().centre().x < 0; });
+    const auto width = [](const city::Mesh& m) { return m.bounds().size().y; };
+    const auto bumper =
+        std::max_element(components.begin(), components.end(),
+                         [&](const city::Mesh& a, const city::Mesh& b) { return width(a) < width(b); });
+    if (bumper != components.end()) shapes.push_back(shapeOf(model.name + "'s bumper", *bumper, {4, -2, 1}));
     const city::Mesh front = frontOf(model);
     if (front.indices.empty())
         throw std::runtime_error(

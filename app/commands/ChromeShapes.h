@@ -22,9 +22,9 @@ struct ChromeShape {
     glm::dvec3 from{1, 0, 0};  ///< unit length, where its front is seen from
 };
 
-/// A ball, an ellipsoid, a rounded cylinder, a bowl's inside, and a car's front up to its bonnet's edge: the
-/// built-in saloon's, or that of a GLB scaled to a length in metres. Throws std::runtime_error for a file
-/// that cannot be read.
+/// A ball, an ellipsoid, a rounded cylinder, a bowl's inside, a car's widest chrome in front (its bumper),
+/// and its front up to its bonnet's edge: the built-in saloon's, or that of a GLB scaled to a length in
+/// metres. Throws std::runtime_error for a file that cannot be read.
 std::vector<ChromeShape> chromeShapes(const std::optional<std::filesystem::path>& car, double carLength);
 
 /// Points around a shape, from half its ball's radius to six radii away, evenly spread over the magnitudes.

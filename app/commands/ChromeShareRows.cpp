@@ -38,14 +38,14 @@ struct Crowd {
     std::vector<std::unique_ptr<VirtualObject>> objects;  ///< meshes within pieces
     reflection::VirtualCounts counts;
 
-    Crowd(const ChromePart& part, double share, const reflection::VirtualOptions& how) {
+    Crowd(const StagedChrome& part, double share, const reflection::VirtualOptions& how) {
         reflection::VirtualOptions options = how;
         options.share = share;
         for (std::size_t p = 0; p < part.reflector.pieces.size(); ++p)
             for (const CloseMesh& m : part.close)
                 objects.push_back(std::make_unique<VirtualObject>(m.positions, options));
     }
-    void update(const ChromePart& part, const glm::dvec3& eye) {
+    void update(const StagedChrome& part, const glm::dvec3& eye) {
         counts = {};
         std::size_t k = 0;
         for (const reflection::ReflectorPiece& piece : part.reflector.pieces)
@@ -59,7 +59,7 @@ struct Crowd {
     }
 };
 
-std::vector<Seen> seenIn(const ChromePart& part, const glm::dvec3& eye, const PixelPlace& place,
+std::vector<Seen> seenIn(const StagedChrome& part, const glm::dvec3& eye, const PixelPlace& place,
                          const reflection::VirtualOptions& how) {
     std::vector<Seen> all;
     std::vector<glm::dvec3> where;
@@ -168,9 +168,9 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
         out.rows.push_back(std::move(row));
     };
     std::vector<Share> whole(shares);
-    std::vector<ChromePart> parts = stage.parts;
+    std::vector<StagedChrome> parts = stage.parts;
     // What a share saves depends on how many vertices a cell holds: the same things with finer triangles.
-    for (const ChromePart& part : stage.parts) {
+    for (const StagedChrome& part : stage.parts) {
         if (part.concave()) continue;
         parts.push_back(part);
         parts.back().name += ", 4 times the triangles";
@@ -179,7 +179,7 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
         if (options.stop()) return out;
-        const ChromePart& part = parts[p];
+        const StagedChrome& part = parts[p];
         const std::vector<Seen> seen = seenIn(part, eye, place, options.vertex);
         std::vector<Crowd> crowds;
         for (const PaperShare& s : paperShares) crowds.emplace_back(part, s.share, options.vertex);

@@ -44,7 +44,7 @@ city::Mesh plainMeshOf(const LitMesh& mesh) {
 
 ChromeStage::ChromeStage(const MirrorWorld& scene, double reach) : world(scene) {
     for (const MirrorWorld::Curved& c : world.curved) {
-        ChromePart part;
+        StagedChrome part;
         part.mirror = &c;
         part.reflector = reflection::makeReflector(plainMeshOf(c.finest()));
         const bool concave =

@@ -25,7 +25,7 @@ CloseMesh welded(const LitMesh& mesh);
 city::Mesh plainMeshOf(const LitMesh& mesh);
 
 /// A reflector of a scene, ready for searches, and what stands close to it. World frame.
-struct ChromePart {
+struct StagedChrome {
     std::string name;
     const MirrorWorld::Curved* mirror = nullptr;
     reflection::Reflector reflector;
@@ -44,7 +44,7 @@ struct ChromeStage {
     explicit ChromeStage(const MirrorWorld& scene, double reach = 12);
 
     const MirrorWorld& world;
-    std::vector<ChromePart> parts;
+    std::vector<StagedChrome> parts;
 };
 
 /// Where a view shows directions from its eye.

@@ -78,7 +78,7 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
         all.published = reflection::PublishedOptions{};
         how.push_back({"as published, 9 steps", all});
     }
-    for (const ChromePart& part : stage.parts) {
+    for (const StagedChrome& part : stage.parts) {
         const TrueReflection truth(*part.mirror);
         std::vector<std::vector<std::vector<std::uint32_t>>> neighbours;
         for (const CloseMesh& m : part.close) neighbours.push_back(neighboursOf(m));
