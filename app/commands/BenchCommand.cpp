@@ -30,6 +30,12 @@ std::vector<Bench> allBenches() {
         {{"governor", "a budget held through a step from 10 to 200 cars on screen and back",
           budgetOption | cellOption | mirrorOptions | pictureOptions},
          benchGovernor},
+        {{"kerbside",
+          "chrome bumper and wheel cover with a cyclist passing at 0.3 m, or the views of --staged "
+          "FILE.json: "
+          "error and time; pictures in --out",
+          trafficOptions | qualityOption | cellOption | pictureOptions | outOptions},
+         benchKerbside},
         {{"localmap", "one local map by every method, against re-rendering its six faces",
           mapOptions | mapsOnOptions},
          benchLocalMap},

@@ -259,7 +259,11 @@ int benchSquare(const Options& options) {
             errors.measure(parkedBy, parked, results, table);
             if (scene.city.reflectors[*shot.reflector].stuff == city::StandingReflector::Stuff::chrome &&
                 !interrupted())
-                measureChromeCost(options, stage, errors.close(), parkedBy, parked, results, table);
+                measureChromeCost(
+                    options, stage, errors.close(), parkedBy.name, parkedBy.view, parked,
+                    static_cast<std::uint32_t>(parked.vehicles.size() - scene.city.reflectors.size()) +
+                        *shot.reflector,
+                    results, table);
         }
     }
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);

@@ -30,6 +30,7 @@ int benchStills(const Options& options);
 int benchStreets(const Options& options);
 int benchWindows(const Options& options);
 int benchTracer(const Options& options);
+int benchKerbside(const Options& options);
 int benchLocalMap(const Options& options);
 int benchMirrors(const Options& options);
 

@@ -57,6 +57,28 @@ bool closed(const city::Mesh& mesh) {
     return !edges.empty() && std::ranges::all_of(edges, [](const auto& edge) { return edge.second == 0; });
 }
 
+/// By how much of a part's width its corners may lie before its triangles: facets sag, and bars that follow a
+/// body's outline are a little hollow here and there.
+constexpr float hollow = 0.03f;
+
+/// Whether a closed part bulges everywhere. Of very fine ones some corners and triangles speak for all.
+bool convex(const city::Mesh& mesh, float width) {
+    constexpr std::size_t most = 1024;
+    const std::size_t vertexStep = mesh.vertices.size() / most + 1;
+    const std::size_t triangleStep = mesh.triangleCount() / most + 1;
+    for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3 * triangleStep) {
+        const glm::vec3& a = mesh.vertices[mesh.indices[k]].position;
+        const glm::vec3 n = glm::cross(mesh.vertices[mesh.indices[k + 1]].position - a,
+                                       mesh.vertices[mesh.indices[k + 2]].position - a);
+        const float area = glm::length(n);
+        // Slivers face anywhere.
+        if (!(area > 1e-4f * width * width)) continue;
+        for (std::size_t i = 0; i < mesh.vertices.size(); i += vertexStep)
+            if (glm::dot(n, mesh.vertices[i].position - a) > hollow * width * area) return false;
+    }
+    return true;
+}
+
 float areaOf(const city::Mesh& mesh) {
     float sum = 0;
     for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
@@ -148,8 +170,9 @@ ChromeParts::ChromeParts(std::span<const vehicles::VehicleModel> models) {
                     part.radius = std::max(part.radius, glm::length(v.position));
                 }
                 if (part.radius < leastRadius) continue;
-                part.closed = closed(component);
                 part.width = areaOf(component) / (2 * std::numbers::pi_v<float> * part.radius);
+                part.closed = closed(component);
+                part.convex = part.closed && convex(component, part.width);
                 const auto known = std::ranges::find_if(
                     shapes_, [&](const auto& shape) { return same(shape->mesh, component); });
                 part.shape = static_cast<std::uint32_t>(known - shapes_.begin());
@@ -169,7 +192,7 @@ void ChromeParts::giveCompanion(std::size_t model, city::Mesh companion) {
     if (model >= models_.size() || models_[model].empty() || companion.empty()) return;
     ChromePart& part = models_[model].front();
     for (city::Vertex& v : companion.vertices) v.position -= part.centre;
-    part.closed = true;
+    part.closed = part.convex = true;
     shapes_[part.shape]->companion = std::move(companion);
 }
 
@@ -185,6 +208,10 @@ const reflection::Reflector& ChromeParts::reflectorOf(const ChromePart& part) co
         shape.made = true;
     });
     return shape.reflector;
+}
+
+const city::Mesh& ChromeParts::meshOf(const ChromePart& part) const {
+    return shapes_[part.shape]->mesh;
 }
 
 std::size_t ChromeParts::reflectorsMade() const {

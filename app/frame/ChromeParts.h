@@ -19,6 +19,7 @@ struct ChromePart {
     /// Of a sphere of as much surface per radius: strips are narrow, however long, metres.
     float width = 0;
     bool closed = false;   ///< a whole body: every edge has two triangles
+    bool convex = false;   ///< and it bulges everywhere: each thing shows in it once
     bool onWheel = false;  ///< it is there on every wheel, and turns with it
 };
 
@@ -52,6 +53,8 @@ class ChromeParts {
     /// Made when it is first asked for (tens of milliseconds; a scene without chrome near the viewer makes
     /// none), by any thread, and kept.
     const reflection::Reflector& reflectorOf(const ChromePart& part) const;
+    /// A part's own triangles, in the same frame.
+    const city::Mesh& meshOf(const ChromePart& part) const;
     std::size_t reflectorsMade() const;
     std::size_t bytes() const;  ///< of the maps made
 

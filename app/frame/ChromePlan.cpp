@@ -98,7 +98,7 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         const vehicles::VehiclePose& pose = scene.vehicles[index];
         const vehicles::VehicleModel& model = models[pose.model];
         const ChromePart& part = parts.of(pose.model)[p];
-        if (!part.closed && !options.openParts) {
+        if (!(part.closed && part.convex) && !options.openParts) {
             ++plan.open;
             return;
         }

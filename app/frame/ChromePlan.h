@@ -35,7 +35,7 @@ struct ChromePlan {
     std::vector<ChromeJob> jobs;     ///< the most visible first
     std::uint32_t parts = 0;         ///< chrome parts of the vehicles seen, in all views
     std::uint32_t outOfSight = 0;    ///< of these: outside the view, or on the far side of their vehicle
-    std::uint32_t open = 0;          ///< no whole bodies: see ChromePlanOptions::openParts
+    std::uint32_t open = 0;          ///< no whole convex bodies: see ChromePlanOptions::openParts
     std::uint32_t tooSmall = 0;      ///< the local map is right to a pixel
     std::uint32_t nothingClose = 0;  ///< nothing within reach
     std::uint32_t leftOut = 0;       ///< for want of room
@@ -45,9 +45,9 @@ struct ChromePlan {
 
 struct ChromePlanOptions {
     bool on = true;
-    bool vehicles = false;  ///< their parts too, not only what stands
-    /// Parts with a rim too. Past it their images run out onto the surface that closes their maps, where
-    /// searches are slow and triangles tear.
+    bool vehicles = true;  ///< their parts too, not only what stands
+    /// Parts with a rim or hollows too. Past a rim their images run out onto the surface that closes their
+    /// maps, where searches are slow and triangles tear.
     bool openParts = false;
     std::uint32_t mostJobs = 8;  ///< a frame; the least visible are left out
     /// Things farther away than so many radii of a part are left to the map: seen from all over the part

@@ -37,8 +37,8 @@ constexpr double patchLasts = 0.2;
 /// Placed things may be off by this share of their distance from the part.
 constexpr double placedDetail = 0.01;
 
-/// Names of what is near a part, beside vehicles' ids and one: 0 is the city, this its own vehicle.
-constexpr std::uint64_t ownThing = ~std::uint64_t{0};
+/// Each more doubles the searches, all of them at the outline, where images crowd.
+constexpr int mostHalvings = 6;
 
 enum class Drawing : std::uint8_t { solid, cutout, plain, map, parallax, count };
 
@@ -88,7 +88,7 @@ struct CityChrome::Impl {
     void allocate(glm::ivec2 size);
     const PieceMesh& pieceMesh(const reflection::ReflectorPiece& piece);
     Object& object(Kept& kept, std::size_t piece, std::uint64_t thing, std::uint32_t index,
-                   const CloseMesh& source, const ChromeDrawing& options);
+                   const CloseMesh& source, double share);
     void gatherCity(const ChromeJob& job, Kept& kept);
     void drawObject(Object& object, const glm::mat4& clipFromVirtual, const glm::mat3& worldFromPart,
                     const glm::vec4& closeAround, const glm::dvec3& eye, const Surroundings& around);
@@ -168,13 +168,14 @@ const CityChrome::Impl::PieceMesh& CityChrome::Impl::pieceMesh(const reflection:
 
 CityChrome::Impl::Object& CityChrome::Impl::object(Kept& job, std::size_t piece, std::uint64_t thing,
                                                    std::uint32_t index, const CloseMesh& source,
-                                                   const ChromeDrawing& options) {
+                                                   double share) {
     Object& o = job.objects[{piece, thing, index}];
     o.used = frame;
     if (o.source != &source) {
         o.source = &source;
         reflection::VirtualMeshOptions virtualOptions;
-        virtualOptions.vertices.share = source.exact ? 1 : options.share;
+        virtualOptions.vertices.share = source.exact ? 1 : share;
+        virtualOptions.vertices.search.thorough = false;
         o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, virtualOptions);
         o.drawn = std::make_unique<gl::ChromeMesh>(source.attributes);
         o.lastTolerance = -1;
@@ -228,9 +229,13 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         const glm::dmat4 partFromWorld = glm::inverse(job.worldFromPart);
         const glm::dvec3 eye(partFromWorld * glm::dvec4(pass.eye, 1));
         reflection::VirtualMeshOptions virtualOptions;
-        virtualOptions.vertices.share = options.share;
+        // Flat parts with sharp edges move images faster than grids follow, and edges would be halved in vain
+        // until they did.
+        const double share = stands(own) ? options.share : 1;
+        virtualOptions.vertices.share = share;
+        virtualOptions.vertices.search.thorough = false;
         // The ground is cut off at the patch alone: its edges are as long as the patch.
-        virtualOptions.mostHalvings = 9;
+        virtualOptions.mostHalvings = mostHalvings;
         virtualOptions.tolerance = options.tolerance / static_cast<double>(pass.pixelsPerRadian);
         virtualOptions.vertices.cellTolerance = virtualOptions.tolerance;
         const double distance = glm::length(eye);
@@ -255,28 +260,20 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
             glm::dmat4 worldFromPatch(1);
             worldFromPatch[3] = glm::dvec4(kept.place, 1);
             for (std::uint32_t i = 0; i < kept.city.size(); ++i)
-                add(my.object(kept, p, 0, i, kept.city[i], options), worldFromPatch,
+                add(my.object(kept, p, 0, i, kept.city[i], 1), worldFromPatch,
                     kept.city[i].cutout ? Drawing::cutout : Drawing::solid, 0);
             for (const std::uint32_t index : job.close) {
                 const vehicles::VehiclePose& pose = around.poses[index];
-                // A thing at distance d is seen in a part of radius r reduced as r / 2 to d.
+                // A thing at distance d is seen in a ball of radius r reduced as r / 2 to d; in parts of
+                // vehicles, which are flat here and round there, as large as in a plane mirror.
                 const double away = std::max(
                     glm::length(pose.position - glm::dvec3(job.worldFromPart[3])) - job.radius, job.radius);
-                const double allowed = options.detail * distance / static_cast<double>(pass.pixelsPerRadian) *
-                                       (1 + 2 * away / job.radius);
+                const double allowed = options.detail / static_cast<double>(pass.pixelsPerRadian) *
+                                       (stands(own) ? distance * (1 + 2 * away / job.radius) : distance);
                 std::uint32_t number = 0;
                 for (const CloseVehicles::Placed& placed : my.vehicles.of(pose, static_cast<float>(allowed)))
-                    add(my.object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, options),
+                    add(my.object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, share),
                         placed.worldFromMesh, drawingOf(index), index);
-            }
-            if (!stands(own)) {
-                std::uint32_t number = 0;
-                const double allowed = options.detail * distance / static_cast<double>(pass.pixelsPerRadian);
-                for (const CloseVehicles::Placed& placed :
-                     my.vehicles.ownOf(own, part, job.part, job.wheel, static_cast<float>(job.reach),
-                                       static_cast<float>(allowed)))
-                    add(my.object(kept, p, ownThing, number++, *placed.mesh, options), placed.worldFromMesh,
-                        drawingOf(job.vehicle), job.vehicle);
             }
             drawn.push_back({&job, &piece, first, tasks.size()});
         }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 
 #include "app/frame/VehicleShading.h"
@@ -69,51 +68,6 @@ const CloseMesh& CloseVehicles::meshOf(const VehicleLevels::Level& level) {
     std::unique_ptr<CloseMesh>& made = meshes_[&level];
     if (!made) made = meshFrom(*level.vertices, level.indices);
     return *made;
-}
-
-const CloseMesh& CloseVehicles::around(const VehicleLevels::Level& level, const ChromePart& part,
-                                       std::uint32_t index, float reach) {
-    std::unique_ptr<CloseMesh>& made = arounds_[{&level, index}];
-    if (made) return *made;
-    constexpr auto chrome = static_cast<std::uint32_t>(vehicles::Surface::chrome);
-    const auto away = [&](std::uint32_t i) {
-        return glm::length(level.vertices->vertices[i].position - part.centre);
-    };
-    std::vector<std::uint32_t> kept;
-    for (std::size_t k = 0; k + 2 < level.indices.size(); k += 3) {
-        const std::uint32_t* t = &level.indices[k];
-        const float nearest = std::min({away(t[0]), away(t[1]), away(t[2])});
-        const float farthest = std::max({away(t[0]), away(t[1]), away(t[2])});
-        // Coarser levels are off by their error.
-        const bool itself = level.vertices->vertices[t[0]].material == chrome &&
-                            farthest <= 1.01f * part.radius + level.error;
-        if (nearest < reach && !itself) kept.insert(kept.end(), t, t + 3);
-    }
-    made = meshFrom(*level.vertices, kept);
-    return *made;
-}
-
-std::span<const CloseVehicles::Placed> CloseVehicles::ownOf(const vehicles::VehiclePose& pose,
-                                                            const ChromePart& part, std::uint32_t index,
-                                                            std::uint32_t wheel, float reach, float allowed) {
-    placed_.clear();
-    if (pose.model >= models_.size()) return placed_;
-    const VehicleLevels& levels = levelsOf(pose.model);
-    const glm::mat3 turn = worldFromVehicle(pose);
-    const auto add = [&](const CloseMesh& mesh, const glm::dmat4& worldFromMesh) {
-        if (!mesh.indices.empty()) placed_.push_back({&mesh, worldFromMesh});
-    };
-    if (part.onWheel) {
-        if (levels.wheels.empty() || wheel >= levels.places.size()) return placed_;
-        const vehicles::VehicleModel::Wheel& at = levels.places[wheel];
-        add(around(levels.wheels[VehicleLevels::choose(levels.wheels, allowed)], part, index, reach),
-            placed(turn * vehicleFromWheel(at, pose), pose.position + glm::dvec3(turn * at.centre)));
-        return placed_;
-    }
-    if (levels.bodies.empty()) return placed_;
-    add(around(levels.bodies[VehicleLevels::choose(levels.bodies, allowed)], part, index, reach),
-        placed(turn, pose.position));
-    return placed_;
 }
 
 std::span<const CloseVehicles::Placed> CloseVehicles::of(const vehicles::VehiclePose& pose, float allowed) {

@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "app/frame/ChromeParts.h"
@@ -42,23 +41,16 @@ class CloseVehicles {
     /// Body and wheels at the coarsest levels that are off by no more than `allowed` metres. Good until the
     /// next call.
     std::span<const Placed> of(const vehicles::VehiclePose& pose, float allowed);
-    /// What a part of a vehicle (the model's part number `index`) has around it of its own vehicle, chrome
-    /// within the part's ball left out, else as `of`. A wheel's part has the wheel around it.
-    std::span<const Placed> ownOf(const vehicles::VehiclePose& pose, const ChromePart& part,
-                                  std::uint32_t index, std::uint32_t wheel, float reach, float allowed);
     /// World box of a vehicle, wide enough for its wheels.
     city::Aabb boundsOf(const vehicles::VehiclePose& pose);
 
   private:
     const CloseMesh& meshOf(const VehicleLevels::Level& level);
-    const CloseMesh& around(const VehicleLevels::Level& level, const ChromePart& part, std::uint32_t index,
-                            float reach);
     const VehicleLevels& levelsOf(std::size_t model);
 
     std::span<const vehicles::VehicleModel> models_;
     std::map<std::size_t, VehicleLevels> levels_;
     std::map<const VehicleLevels::Level*, std::unique_ptr<CloseMesh>> meshes_;
-    std::map<std::pair<const VehicleLevels::Level*, std::uint32_t>, std::unique_ptr<CloseMesh>> arounds_;
     std::vector<Placed> placed_;
 };
 

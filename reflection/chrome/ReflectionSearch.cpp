@@ -185,6 +185,9 @@ bool finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
+/// Radians that a point may be off where it is not searched for thoroughly: a pixel in any picture.
+constexpr double nearEnough = 1e-3;
+
 /// So many vertices are brought to the map's frame at a time.
 constexpr std::size_t block = 256;
 
@@ -225,6 +228,10 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                      glm::length(moved[k] - mapEye),
                      ReflectionStatus::unreflected,
                      1};
+            } else if (convex && !options.thorough) {
+                if (r.status == ReflectionStatus::outOfSteps)
+                    r.status =
+                        r.residual < nearEnough ? ReflectionStatus::found : ReflectionStatus::unreflected;
             } else if (!convex || r.status == ReflectionStatus::outOfSteps) {
                 r = searchThoroughly(map, mapEye, moved[k], options);
             }

@@ -45,6 +45,9 @@ struct Cut {
     }
 };
 
+/// Edges that run into a crease of a convex body are halved no more often than this.
+constexpr int creaseHalvings = 2;
+
 std::uint64_t keyOf(std::uint32_t a, std::uint32_t b) {
     return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
@@ -117,6 +120,11 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
         return convex && status == ReflectionStatus::hidden ? Side::hidden : Side::seen;
     };
     for (std::size_t k = 0; k < image.size(); ++k) sides[k] = sideOf(image[k].status);
+    // Where a convex body has creases, what would show in them shows nowhere: a border that need not be met.
+    const bool creased = convex && !options.vertices.search.thorough;
+    const auto lost = [&](std::uint32_t v) {
+        return creased && image[v].status == ReflectionStatus::unreflected;
+    };
     const auto usable = [&](std::uint32_t v) { return image[v].status != ReflectionStatus::invalid; };
     std::vector<Triangle> open, next;
     for (std::size_t k = 0; k + 2 < triangles.size(); k += 3) {
@@ -189,7 +197,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
                     const double least = sides[a] == Side::outline && sides[b] == Side::outline ? ofOutline
                                          : smooth                                               ? unbent
                                                   : shortEdge * options.tolerance;
-                    if (length <= least || outside(a, b, length)) continue;
+                    if (length <= least || (lost(a) && lost(b)) || outside(a, b, length)) continue;
                 }
                 if (!halved.try_emplace(keyOf(a, b), straight).second) continue;
                 if (cut) {
@@ -212,7 +220,9 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
                                                 glm::dvec3(image[a].fromEye), glm::dvec3(image[b].fromEye))
                                    : apart(exact, 0.5f * (image[a].fromEye + image[b].fromEye));
             if (!(off > options.tolerance) && side == Side::seen) continue;
-            if (last) {
+            const bool intoCrease = lost(a) || lost(b);
+            if (last || (intoCrease && depth >= creaseHalvings)) {
+                if (intoCrease) halved[keyOf(a, b)] = broken;
                 if (tears && off > torn * apart(image[a].fromEye, image[b].fromEye))
                     halved[keyOf(a, b)] = broken;
                 continue;
@@ -267,7 +277,8 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
             }
             const auto isSeen = [&](const Triangle& of) {
                 for (const std::uint32_t v : of)
-                    if (convex ? sides[v] == Side::seen : image[v].status != ReflectionStatus::hidden)
+                    if (convex ? sides[v] == Side::seen && !lost(v)
+                               : image[v].status != ReflectionStatus::hidden)
                         return true;
                 return false;
             };

@@ -10,6 +10,7 @@
 #include "app/frame/StandingReflectors.h"
 #include "city/model/CityModel.h"
 #include "reflection/chrome/ReflectionSearch.h"
+#include "vehicles/models/Bodies.h"
 
 namespace app {
 namespace {
@@ -122,13 +123,13 @@ TEST(ChromePlan, NothingWithinReachMeansNoJob) {
 
 TEST(ChromePlan, PartsOfVehiclesAndOnesWithARimAreAskedForApart) {
     const World world(5);
-    const ChromePlan standing = planChrome(world.scene, world.seen, world.models, world.parts, {});
+    ChromePlanOptions alone;
+    alone.vehicles = false;
+    const ChromePlan standing = planChrome(world.scene, world.seen, world.models, world.parts, alone);
     ASSERT_EQ(standing.jobs.size(), 1u);
     EXPECT_EQ(standing.jobs[0].vehicle, 0u);
     EXPECT_EQ(standing.parts, 1u);
-    ChromePlanOptions closed;
-    closed.vehicles = true;
-    const ChromePlan all = planChrome(world.scene, world.seen, world.models, world.parts, closed);
+    const ChromePlan all = planChrome(world.scene, world.seen, world.models, world.parts, {});
     EXPECT_EQ(all.jobs.size(), 1u);
     EXPECT_EQ(all.open, 1u);
 }
@@ -216,6 +217,28 @@ TEST(ChromePlan, BallsLieWithinTheirPixels) {
         EXPECT_TRUE(p.y >= static_cast<float>(pixels.low.y) && p.y <= static_cast<float>(pixels.high.y));
     }
     EXPECT_LT(pixels.area(), all.area() / 8);
+}
+
+TEST(ChromeParts, BumpersCoversMirrorCapsAndHandlesAreWholeConvexBodies) {
+    const vehicles::VehicleModel saloon = vehicles::saloon();
+    const ChromeParts parts(std::span(&saloon, 1));
+    int bodies = 0, wheels = 0, others = 0;
+    for (const ChromePart& part : parts.of(0)) {
+        if (!part.convex) {
+            ++others;
+            continue;
+        }
+        EXPECT_TRUE(part.closed);
+        ++(part.onWheel ? wheels : bodies);
+        const reflection::Reflector& reflector = parts.reflectorOf(part);
+        ASSERT_EQ(reflector.pieces.size(), 1u);
+        EXPECT_EQ(reflector.pieces[0].bend, reflection::Bend::convex);
+        EXPECT_EQ(reflector.pieces[0].built.report.coveredShare, 1);
+    }
+    // Two bumpers, two caps with a glass each, four handles; a cover; rims of windows, grilles.
+    EXPECT_EQ(bodies, 10);
+    EXPECT_EQ(wheels, 1);
+    EXPECT_GT(others, 2);
 }
 
 TEST(ChromeParts, WhatDiffersInItsPlaceAloneIsMadeOnce) {
