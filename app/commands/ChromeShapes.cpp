@@ -8,6 +8,7 @@
 #include "app/commands/ChromeStage.h"
 #include "app/frame/ChromeParts.h"
 #include "app/mirrors/Lathe.h"
+#include "app/mirrors/LitShapes.h"
 #include "vehicles/import/LoadVehicle.h"
 #include "vehicles/models/Fleet.h"
 
@@ -46,7 +47,7 @@ city::Mesh turned(std::vector<glm::dvec2> profile) {
     lathe.profile = std::move(profile);
     lathe.steps = 16;
     lathe.slices = 320;
-    return plainMeshOf(LatheSurface(lathe).mesh(glm::vec3(1), glm::vec3(1)));
+    return withoutLight(LatheSurface(lathe).mesh(glm::vec3(1), glm::vec3(1)));
 }
 
 /// What faces forwards in the front sixth of a car, between the road and the bonnet's edge.

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "app/mirrors/LitShapes.h"
+
 namespace app {
 
 namespace {
@@ -30,23 +32,11 @@ CloseMesh welded(const LitMesh& mesh) {
     return out;
 }
 
-city::Mesh plainMeshOf(const LitMesh& mesh) {
-    city::Mesh plain;
-    for (const LitMesh::Corner& c : mesh.corners) {
-        city::Vertex v;
-        v.position = c.position;
-        v.normal = c.normal;
-        plain.vertices.push_back(v);
-    }
-    plain.indices = mesh.indices;
-    return plain;
-}
-
 ChromeStage::ChromeStage(const MirrorWorld& scene, double reach) : world(scene) {
     for (const MirrorWorld::Curved& c : world.curved) {
         StagedChrome part;
         part.mirror = &c;
-        part.reflector = reflection::makeReflector(plainMeshOf(c.finest()));
+        part.reflector = reflection::makeReflector(withoutLight(c.finest()));
         const bool concave =
             !part.reflector.pieces.empty() && part.reflector.pieces.front().bend == reflection::Bend::concave;
         part.name = std::to_string(parts.size() + 1) + (concave ? ", concave" : ", convex");

@@ -22,8 +22,6 @@ struct CloseMesh {
 };
 CloseMesh welded(const LitMesh& mesh);
 
-city::Mesh plainMeshOf(const LitMesh& mesh);
-
 /// A reflector of a scene, ready for searches, and what stands close to it. World frame.
 struct StagedChrome {
     std::string name;

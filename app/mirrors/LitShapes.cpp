@@ -146,4 +146,16 @@ LitMesh subdivided(const LitMesh& mesh, float longest) {
     return fine;
 }
 
+city::Mesh withoutLight(const LitMesh& mesh) {
+    city::Mesh surface;
+    for (const LitMesh::Corner& c : mesh.corners) {
+        city::Vertex v;
+        v.position = c.position;
+        v.normal = c.normal;
+        surface.vertices.push_back(v);
+    }
+    surface.indices = mesh.indices;
+    return surface;
+}
+
 }  // namespace app

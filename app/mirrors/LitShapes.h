@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include "app/mirrors/MirrorWorld.h"
+#include "city/geometry/Mesh.h"
 
 namespace app {
 
@@ -24,5 +25,8 @@ void bakeLight(LitMesh& mesh);
 
 /// The same triangles cut until no edge is longer than `longest`: for projections that bend straight lines.
 LitMesh subdivided(const LitMesh& mesh, float longest);
+
+/// Its triangles and normals without their light.
+city::Mesh withoutLight(const LitMesh& mesh);
 
 }  // namespace app

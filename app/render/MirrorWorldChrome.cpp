@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "app/mirrors/LitShapes.h"
 #include "reflection/chrome/ReflectorPieces.h"
 #include "reflection/gl/ChromeLayer.h"
 #include "reflection/gl/ChromeSearchMesh.h"
@@ -24,18 +25,6 @@ namespace {
 /// An object farther from a reflector than so many of its radii is left to the environment map: seen from all
 /// over the reflector its direction differs by less than one part in so many.
 constexpr double closeRadii = 12;
-
-city::Mesh asMesh(const LitMesh& lit) {
-    city::Mesh mesh;
-    for (const LitMesh::Corner& c : lit.corners) {
-        city::Vertex v;
-        v.position = c.position;
-        v.normal = c.normal;
-        mesh.vertices.push_back(v);
-    }
-    mesh.indices = lit.indices;
-    return mesh;
-}
 
 /// An object's corners, each place and colour once: triangles that meet without a crease share searches.
 struct Welded {
@@ -171,11 +160,11 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
             chrome.close[o] = distanceTo(world.objects[o].bounds(), curved.reflector.centre) <
                               (closeRadii + 1) * curved.reflector.radius;
         // Drawn is what has been drawn before, depth by depth: the finer surface only where it is one piece.
-        reflection::Reflector reflector = reflection::makeReflector(asMesh(curved.finest()));
+        reflection::Reflector reflector = reflection::makeReflector(withoutLight(curved.finest()));
         if (reflector.pieces.size() == 1)
-            reflector.pieces.front().mesh = asMesh(curved.mesh);
+            reflector.pieces.front().mesh = withoutLight(curved.mesh);
         else
-            reflector = reflection::makeReflector(asMesh(curved.mesh));
+            reflector = reflection::makeReflector(withoutLight(curved.mesh));
         for (reflection::ReflectorPiece& piece : reflector.pieces) {
             if (piece.built.map.empty()) continue;
             if (!concave && piece.bend == reflection::Bend::concave) continue;
