@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -40,6 +41,10 @@ struct MirrorDetail {
     double depth = 2;   ///< mirrors in a row; whole numbers count
 
     bool operator==(const MirrorDetail&) const = default;
+    /// Whether as many reflections are drawn, as deep: those that come or go change a picture at once.
+    bool drawsAsMany(const MirrorDetail& b) const {
+        return std::lround(maps) == std::lround(b.maps) && std::lround(depth) == std::lround(b.depth);
+    }
 };
 
 struct Detail {

@@ -107,6 +107,8 @@ class Governor {
     void stepTo(double position, bool still);
     void creep(bool still);
     void decide(bool still, bool sudden);
+    /// Reflections in windows that come or go dissolve, whatever the ladder says of them.
+    void dissolveMirrors(const MirrorDetail& before);
     /// Numbers of the coming detail that follow at a rate. `noticed`: in a view that stands, where nothing
     /// else changes much.
     void follow(bool noticed);

@@ -18,6 +18,8 @@ constexpr double unnoticedTurn = 0.02;  ///< radians
 constexpr double lag = 8;
 // Frames that this takes: what is fast by itself changes more than its detail does.
 constexpr int leastFrames = 2, mostFrames = 32;
+/// Frames that windows take: what they mirror may stand still for so long, but not change at once.
+constexpr int windowFrames = 60;
 /// Names of windows, after those of vehicles and signals.
 constexpr std::uint64_t firstWindow = std::uint64_t{1} << 33;
 
@@ -54,10 +56,13 @@ void StandingView::show(const PassView& pass, std::span<const vehicles::VehicleP
                 int& most = frames.try_emplace(is.id, mostFrames).first->second;
                 most = std::clamp(static_cast<int>(lag / std::max(moved, 1e-3)), leastFrames, most);
             }
+        const auto keepLiveWithin = [&](int most, std::uint64_t name, const city::Aabb& box) {
+            if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size_))
+                target.keepLive(name, *pixels, most);
+        };
         const auto keepLive = [&](std::uint64_t name, const city::Aabb& box) {
             const auto found = frames.find(name);
-            if (const auto pixels = pixelsOf(box, pass.eye, pass.clipFromRelative, size_))
-                target.keepLive(name, *pixels, found == frames.end() ? 1 : found->second);
+            keepLiveWithin(found == frames.end() ? 1 : found->second, name, box);
         };
         findChanges(
             held_, poses, colours, heads_, lighting_.sunDirection, boundsOf,
@@ -67,7 +72,8 @@ void StandingView::show(const PassView& pass, std::span<const vehicles::VehicleP
                        std::abs(was.heading - is.heading) > unnoticedTurn || was.braking != is.braking;
             },
             keepLive);
-        for (std::size_t i = 0; i < alwaysLive.size(); ++i) keepLive(firstWindow + i, alwaysLive[i]);
+        for (std::size_t i = 0; i < alwaysLive.size(); ++i)
+            keepLiveWithin(windowFrames, firstWindow + i, alwaysLive[i]);
     }
     drawn_.poses.assign(poses.begin(), poses.end());
     drawn_.colours.assign(colours.begin(), colours.end());

@@ -31,7 +31,7 @@ class StandingView {
     /// Before a view is drawn: what dissolves goes on where the last view is drawn again, and ends elsewhere.
     void begin(const PassView& pass, glm::ivec2 size, const Lighting& lighting, ViewTarget& target);
     /// Then, what the view shows. `alwaysLive`: boxes (world) of what changes as a whole: windows that
-    /// mirror.
+    /// mirror. They are live within two seconds, tile by tile.
     void show(const PassView& pass, std::span<const vehicles::VehiclePose> poses,
               std::span<const vehicles::SignalColour> colours,
               const std::function<city::Aabb(const vehicles::VehiclePose&)>& boundsOf,

@@ -247,6 +247,34 @@ TEST(GovernorTest, whatEachVehicleShowsFollowsAtARateUnlessNobodySeesIt) {
     }
 }
 
+TEST(GovernorTest, windowsReflectionsNeverComeOrGoAtOnceInAStandingView) {
+    // The trap: the view in which a ladder was measured hardly showed them.
+    std::vector<Rung> rungs(2);
+    rungs[0].drawingMs = 20;
+    rungs[1] = rungs[0];
+    rungs[1].drawingMs = 10;
+    rungs[1].error = 0.1;
+    rungs[1].detail.mirrors = {0.7, 0, 1};
+    Governor governor(DetailLadder(rungs), 20.5);
+    SeededRandom random(3);
+    int changes = 0, left = 0;
+    double load = 1;
+    MirrorDetail before;
+    for (int i = 0; i < 2000; ++i) {
+        if (i % 100 == 0) load = random.between(0.7, 2.1);
+        governor.expect({10, i > 0});
+        const MirrorDetail now = governor.detail().mirrors;
+        left = std::max(left - 1, governor.dissolveFrames());
+        if (i > 0 && !now.drawsAsMany(before)) {
+            ++changes;
+            EXPECT_GE(left, 60) << i;
+        }
+        before = now;
+        governor.observe({load * governor.ladder().at(governor.position()).drawingMs, 0, 10, 0});
+    }
+    EXPECT_GT(changes, 4);
+}
+
 TEST(GovernorTest, doesNotGoUpAndDownForEver) {
     // A machine on which the next larger picture always turns out too dear.
     Governor governor(ladder(), 16);
