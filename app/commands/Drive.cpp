@@ -259,7 +259,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
         }
         const Stopwatch reflecting;
         const ReflectionPlan& plan = engine_->update(frame_, seen, *renderer_);
-        reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view)};
+        reflections_ = {engine_->textures(), plan.slots, engine_->mirroredIn(view), renewedBy(plan)};
         stats.reflectionMs = reflecting.elapsed();
         stats.reflections = engine_->counters();
         chrome = chromePlan(seen);

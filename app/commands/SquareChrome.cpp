@@ -47,7 +47,7 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
     Progress progress("frames", cases.size() * (framesBefore + framesMeasured), options.quiet);
     for (const Case& what : cases) {
         std::vector<double> ms[2], ratio, more, searching, all, oneMap;
-        std::uint64_t jobs = 0, vertices = 0, searched = 0, triangles = 0;
+        std::uint64_t jobs = 0, drawn = 0, vertices = 0, searched = 0, triangles = 0;
         for (std::uint32_t i = 0; i < framesBefore + framesMeasured && !interrupted(); ++i) {
             View view = from;
             if (what.moves) view.eye += eyeStep * std::abs(static_cast<double>(i % 20) - 10) * right;
@@ -69,13 +69,14 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
                 chromeOptions.on = k == 1;
                 const ChromePlan chrome =
                     planChrome(frame, indices, scene.models, close.parts, chromeOptions);
-                renderer.drawView(view, {engine.textures(), plan.slots}, target.framebuffer(), {},
-                                  {&chrome, 0, {}});
+                renderer.drawView(view, {engine.textures(), plan.slots, 0, renewedBy(plan)},
+                                  target.framebuffer(), {}, {&chrome, 0, {}});
                 finishDrawing();
                 took[k] = watch.elapsed();
                 if (i < framesBefore || k == 0) continue;
                 const ChromeCounts& c = renderer.counters().chrome;
                 jobs += c.jobs;
+                drawn += c.drawn;
                 vertices += c.vertices;
                 searched += c.searched;
                 triangles += c.triangles;
@@ -103,6 +104,7 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
                      {"width", options.resolution.x},
                      {"height", options.resolution.y},
                      {"chrome_jobs", perFrame(jobs)},
+                     {"jobs_drawn", perFrame(drawn)},
                      {"vertices", perFrame(vertices)},
                      {"searched", perFrame(searched)},
                      {"triangles", perFrame(triangles)},

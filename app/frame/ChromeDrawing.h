@@ -15,6 +15,8 @@ struct ChromeDrawing {
 /// What one view's close chrome took.
 struct ChromeCounts {
     std::uint32_t jobs = 0, meshes = 0;
+    std::uint32_t drawn = 0;    ///< parts of jobs that were drawn anew; the others show what they did
+    std::uint32_t leftOut = 0;  ///< close things too small in a part, hidden behind it or too far
     std::uint64_t vertices = 0, searched = 0, triangles = 0;
     double milliseconds = 0;        ///< searching and handing over, CPU side
     double searchMilliseconds = 0;  ///< the searches alone, on all cores

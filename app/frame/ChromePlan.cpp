@@ -63,24 +63,35 @@ bool behindItsVehicle(const glm::dvec3& part, double radius, const glm::dvec3& e
 
 reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,
                                    const glm::vec3& centre, float radius) {
-    const reflection::PixelRect all{glm::ivec2(0), size};
-    const float distance = glm::length(centre);
-    if (distance <= 1.1f * radius) return all;
-    // The eight corners of the ball's box; where one lies behind the eye, the whole image.
+    if (glm::length(centre) <= 1.1f * radius) return {glm::ivec2(0), size};
+    const glm::vec4 middle = clipFromRelative * glm::vec4(centre, 1);
+    if (middle.w < -2 * radius) return {};
+    city::Aabb box;
+    box.extend(centre - radius);
+    box.extend(centre + radius);
+    return pixelsOfBox(clipFromRelative, size, box);
+}
+
+reflection::PixelRect pixelsOfBox(const glm::mat4& clipFromBox, const glm::ivec2& size,
+                                  const city::Aabb& box) {
+    if (box.empty()) return {};
+    // Its eight corners; where one lies behind the eye, the whole image.
     glm::vec2 low(1e9f), high(-1e9f);
+    int behind = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 at =
-            centre + radius * glm::vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                                        (corner & 4) != 0 ? 1 : -1);
-        const glm::vec4 clip = clipFromRelative * glm::vec4(at, 1);
+        const glm::vec4 clip = clipFromBox * glm::vec4((corner & 1) != 0 ? box.max.x : box.min.x,
+                                                       (corner & 2) != 0 ? box.max.y : box.min.y,
+                                                       (corner & 4) != 0 ? box.max.z : box.min.z, 1);
         if (!(clip.w > 0)) {
-            const glm::vec4 middle = clipFromRelative * glm::vec4(centre, 1);
-            return middle.w < -2 * radius ? reflection::PixelRect{} : all;
+            ++behind;
+            continue;
         }
         const glm::vec2 p = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(size);
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
+    if (behind == 8) return {};
+    if (behind > 0) return {glm::ivec2(0), size};
     const auto inside = [&](const glm::vec2& p) {
         return glm::ivec2(glm::clamp(p, glm::vec2(0), glm::vec2(size)));
     };

@@ -76,5 +76,8 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
 /// close to it, none where it is behind or outside.
 reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,
                                    const glm::vec3& centre, float radius);
+/// The same of a box somewhere. `clipFromBox`: from the box's own frame.
+reflection::PixelRect pixelsOfBox(const glm::mat4& clipFromBox, const glm::ivec2& size,
+                                  const city::Aabb& box);
 
 }  // namespace app

@@ -76,12 +76,17 @@ class Patch {
         }
     }
 
+    /// What comes next has meshes of its own.
+    void part() { parted_ = {true, true}; }
+
   private:
     city::Mesh& meshFor(bool holes) {
         std::vector<city::Mesh>& meshes = holes ? patch_.cutout : patch_.solid;
-        if (meshes.empty() || meshes.back().triangleCount() >= CloseCity::mostTriangles) {
+        bool& parted = parted_[holes ? 1 : 0];
+        if (meshes.empty() || parted || meshes.back().triangleCount() >= CloseCity::mostTriangles) {
             meshes.emplace_back();
             known_[holes ? 1 : 0].clear();
+            parted = false;
         }
         return meshes.back();
     }
@@ -106,6 +111,7 @@ class Patch {
     float half_;
     std::vector<city::Vertex> polygon_, next_;
     std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 2> known_;  ///< of the last mesh of a kind
+    std::array<bool, 2> parted_{};
 };
 
 }  // namespace
@@ -135,7 +141,7 @@ CloseCity::CloseCity(const city::CityModel& city) : city_(city) {
     }
 }
 
-CloseCityPatch CloseCity::gather(const glm::dvec3& place, double reach, double share) const {
+CloseCityPatch CloseCity::gather(const glm::dvec3& place, double reach, const Allowed& allowed) const {
     CloseCityPatch patch;
     patch.place = place;
     patch.reach = reach;
@@ -143,16 +149,21 @@ CloseCityPatch CloseCity::gather(const glm::dvec3& place, double reach, double s
     Patch cutter(city_.materials, patch);
     for (const city::Chunk& chunk : city_.chunks)
         if (touches(chunk.bounds, low, high)) cutter.add(chunk.mesh, nullptr);
+    const auto half = static_cast<float>(reach);
     for (std::size_t i = 0; i < city_.placements.size(); ++i) {
         const city::Aabb& box = placements_[i];
         if (!touches(box, low, high)) continue;
         const city::Placement& placed = city_.placements[i];
         const std::vector<city::Prototype::Level>& levels = city_.prototypes[placed.prototype].levels;
-        const glm::dvec3 apart =
-            glm::max(glm::max(glm::dvec3(box.min) - place, place - glm::dvec3(box.max)), glm::dvec3(0));
-        const auto allowed = static_cast<float>(share * glm::length(apart));
+        city::Aabb around;
+        around.extend(glm::max(glm::vec3(glm::dvec3(box.min) - place), glm::vec3(-half)));
+        around.extend(glm::min(glm::vec3(glm::dvec3(box.max) - place), glm::vec3(half)));
         std::size_t level = 0;
-        while (level + 1 < levels.size() && levels[level + 1].error <= allowed) ++level;
+        if (levels.size() > 1) {
+            const double off = allowed(around);
+            while (level + 1 < levels.size() && static_cast<double>(levels[level + 1].error) <= off) ++level;
+        }
+        cutter.part();
         cutter.add(levels[level].mesh, &placed.worldFromPrototype);
     }
     return patch;

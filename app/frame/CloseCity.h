@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -9,7 +10,8 @@ namespace app {
 
 /// What stands close to a place, cut off at a box around it.
 struct CloseCityPatch {
-    /// Around `place`, axes of the world, of meshes with at most `CloseCity::mostTriangles` each.
+    /// Around `place`, axes of the world, of meshes with at most `CloseCity::mostTriangles` each. Every
+    /// placed thing has its own, so that those that are not seen can be left out.
     std::vector<city::Mesh> solid, cutout;  ///< opaque; with holes where their pattern is transparent
     glm::dvec3 place{0};
     double reach = 0;  ///< half the box's side, metres
@@ -24,10 +26,11 @@ class CloseCity {
     /// Keeps a reference. Cost: the bounds of chunks and placements.
     explicit CloseCity(const city::CityModel& city);
 
+    /// Metres by which a placed thing's level may be off, by its box around the place, axes of the world.
+    using Allowed = std::function<double(const city::Aabb&)>;
     /// Everything within a box of half side `reach` (metres, > 0), polygons cut off at it. Placed things at
-    /// the coarsest level that is off by no more than `share` of their distance from the place. Cost: linear
-    /// in the triangles of the chunks that the box touches.
-    CloseCityPatch gather(const glm::dvec3& place, double reach, double share) const;
+    /// the coarsest level that is allowed. Cost: linear in the triangles of the chunks that the box touches.
+    CloseCityPatch gather(const glm::dvec3& place, double reach, const Allowed& allowed) const;
 
   private:
     const city::CityModel& city_;

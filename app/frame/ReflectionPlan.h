@@ -40,6 +40,13 @@ struct ReflectionPlan {
     std::uint64_t texels = 0;      ///< to be built
 };
 
+/// Maps that the plan builds anew.
+inline std::vector<reflection::LocalMapSlot> renewedBy(const ReflectionPlan& plan) {
+    std::vector<reflection::LocalMapSlot> slots;
+    for (const MapJob& job : plan.jobs) slots.push_back(job.slot);
+    return slots;
+}
+
 struct PlanOptions {
     std::uint64_t texelBudget =
         80'000;                   ///< texels built a frame; at least one map is built whatever it costs

@@ -1,7 +1,5 @@
 #include "app/render/CityChrome.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -9,12 +7,10 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
-#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "app/frame/StandingReflectors.h"
-#include "app/frame/VehicleShading.h"
-#include "app/render/CloseMeshes.h"
+#include "app/render/ChromeObjects.h"
 #include "app/render/NodeView.h"
 #include "reflection/gl/ChromeLayer.h"
 #include "reflection/gl/Program.h"
@@ -30,74 +26,79 @@ double milliseconds(std::chrono::steady_clock::time_point since) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
 }
 
-/// Frames for which the meshes of a job are kept that is not there any more.
-constexpr std::uint64_t framesKept = 30;
-/// A patch of the city is gathered anew when its part has moved by this share of its reach.
-constexpr double patchLasts = 0.2;
-/// Placed things may be off by this share of their distance from the part.
-constexpr double placedDetail = 0.01;
-
-/// Each more doubles the searches, all of them at the outline, where images crowd.
-constexpr int mostHalvings = 6;
+bool contains(const std::vector<reflection::LocalMapSlot>& slots, const reflection::LocalMapSlot& slot) {
+    return std::ranges::any_of(slots, [&](const reflection::LocalMapSlot& s) {
+        return s.sizeClass == slot.sizeClass && s.layer == slot.layer;
+    });
+}
 
 enum class Drawing : std::uint8_t { solid, cutout, plain, map, parallax, count };
 
 }  // namespace
 
 struct CityChrome::Impl {
-    /// A thing near a part, as one piece of the part shows it.
-    struct Object {
-        const CloseMesh* source = nullptr;
-        std::unique_ptr<reflection::VirtualMesh> mesh;
-        std::unique_ptr<gl::ChromeMesh> drawn;
-        glm::dmat4 worldFromMesh{1};
-        Drawing drawing = Drawing::solid;
-        std::uint32_t vehicle = 0;
-        std::uint64_t used = 0;
-        glm::dmat4 lastMesh{0};
-        glm::dvec3 lastEye{0};
-        double lastTolerance = -1;
-        bool changed = true;
-        reflection::VirtualCounts counts;
+    /// From where, and in which light.
+    struct Seen {
+        glm::dvec3 eye{0};
+        glm::mat4 clip{0};
+        glm::ivec2 size{0};
+        Lighting lighting = {};
+        bool operator==(const Seen&) const = default;
     };
-    /// What is kept of a job from frame to frame.
-    struct Kept {
-        std::uint64_t used = 0;
-        std::vector<CloseMesh> city;  ///< around `place`
-        glm::dvec3 place{0};
-        double reach = 0;
-        std::map<std::tuple<std::size_t, std::uint64_t, std::uint32_t>, Object>
-            objects;  ///< piece, thing, mesh
-    };
-    struct Task {
-        Object* object;
-        const reflection::ReflectorMap* map;
-        glm::dvec3 eye;
-        glm::dmat4 partFromMesh;
-        reflection::VirtualMeshOptions options;
+    /// What is drawn of a piece, and how: where none of it differs from the frame before, its pixels stay.
+    struct Layer {
+        std::array<std::uint32_t, 4> name{};  ///< vehicle, part, wheel, piece
+        glm::dmat4 worldFromPart{1};
+        float share = 0;
+        reflection::PixelRect pixels;
+        struct Thing {
+            const ChromeObject* object = nullptr;
+            glm::dmat4 worldFromMesh{1};
+            Drawing drawing = Drawing::solid;
+            glm::vec4 paint{0};
+            reflection::LocalMapSlot slot;
+            bool operator==(const Thing& b) const {
+                return object == b.object && worldFromMesh == b.worldFromMesh && drawing == b.drawing &&
+                       paint == b.paint && slot.sizeClass == b.slot.sizeClass && slot.layer == b.slot.layer;
+            }
+        };
+        std::vector<Thing> things;
+        bool operator==(const Layer& b) const {
+            return name == b.name && worldFromPart == b.worldFromPart && share == b.share &&
+                   pixels == b.pixels && things == b.things;
+        }
     };
     struct PieceMesh {
         gl::Buffer vertices, indices;
         gl::VertexArray array;
         GLsizei count = 0;
+        city::Aabb box;
     };
 
-    explicit Impl(const CloseScene& closeScene) : scene(closeScene), vehicles(closeScene.models) {}
+    explicit Impl(const CloseScene& closeScene) : objects(closeScene) {}
 
+    static glm::mat4 clipFromPart(const ChromeJob& job, const PassView& pass) {
+        glm::dmat4 relativeFromPart = job.worldFromPart;
+        relativeFromPart[3] -= glm::dvec4(pass.eye, 0);
+        return pass.clipFromRelative * glm::mat4(relativeFromPart);
+    }
     void makeGlObjects();
     void allocate(glm::ivec2 size);
     const PieceMesh& pieceMesh(const reflection::ReflectorPiece& piece);
-    Object& object(Kept& kept, std::size_t piece, std::uint64_t thing, std::uint32_t index,
-                   const CloseMesh& source, double share);
-    void gatherCity(const ChromeJob& job, Kept& kept);
-    void drawObject(Object& object, const glm::mat4& clipFromVirtual, const glm::mat3& worldFromPart,
-                    const glm::vec4& closeAround, const glm::dvec3& eye, const Surroundings& around);
+    Layer layerOf(const ChromeShown& shown, std::uint32_t piece, const PassView& pass,
+                  const Surroundings& around);
+    /// Which of these must be drawn anew. Clears their pixels, and those of what is there no more.
+    std::vector<bool> outdated(std::span<const ChromeShown> shown, std::span<const Layer> layers,
+                               const Seen& seenAs, const Surroundings& around);
+    void drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
+                   const glm::mat3& worldFromPart, const glm::vec4& closeAround, const glm::dvec3& eye,
+                   const Surroundings& around);
 
-    const CloseScene& scene;
-    CloseVehicles vehicles;
-    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, Kept> kept;
+    ChromeObjects objects;
+    std::vector<Layer> before;
+    Seen seenBefore;
+    std::optional<std::vector<reflection::LocalMapSlot>> skipped;  ///< maps that changed meanwhile
     std::map<const reflection::ReflectorPiece*, PieceMesh> pieces;
-    std::uint64_t frame = 0;
 
     std::array<gl::Program, static_cast<std::size_t>(Drawing::count)> programs;
     gl::Program part;
@@ -105,7 +106,7 @@ struct CityChrome::Impl {
     gl::Sampler mapSampler;
     gl::Texture light, depth;
     gl::Framebuffer target;
-    glm::ivec2 size{0};
+    glm::ivec2 size{0}, drawnSize{0};
 };
 
 CityChrome::CityChrome(const CloseScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -144,6 +145,8 @@ void CityChrome::Impl::makeGlObjects() {
 void CityChrome::Impl::allocate(glm::ivec2 wanted) {
     if (size.x >= wanted.x && size.y >= wanted.y) return;
     size = glm::max(size, wanted);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
     light = gl::Texture::image2D(GL_RGBA16F, size.x, size.y);
     light.filter(GL_NEAREST, GL_NEAREST).wrap(GL_CLAMP_TO_EDGE);
     depth = gl::Texture::image2D(GL_DEPTH_COMPONENT32F, size.x, size.y);
@@ -151,6 +154,9 @@ void CityChrome::Impl::allocate(glm::ivec2 wanted) {
     target = gl::Framebuffer::create();
     target.attach(GL_COLOR_ATTACHMENT0, light.name()).attach(GL_DEPTH_ATTACHMENT, depth.name());
     target.requireComplete("what chrome shows of close things");
+    constexpr float far = 0;
+    glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &far);
+    before.clear();
 }
 
 const CityChrome::Impl::PieceMesh& CityChrome::Impl::pieceMesh(const reflection::ReflectorPiece& piece) {
@@ -163,35 +169,96 @@ const CityChrome::Impl::PieceMesh& CityChrome::Impl::pieceMesh(const reflection:
         .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
         .indices(mesh.indices.name());
     mesh.count = static_cast<GLsizei>(piece.mesh.indices.size());
+    mesh.box = piece.mesh.bounds();
     return mesh;
 }
 
-CityChrome::Impl::Object& CityChrome::Impl::object(Kept& job, std::size_t piece, std::uint64_t thing,
-                                                   std::uint32_t index, const CloseMesh& source,
-                                                   double share) {
-    Object& o = job.objects[{piece, thing, index}];
-    o.used = frame;
-    if (o.source != &source) {
-        o.source = &source;
-        reflection::VirtualMeshOptions virtualOptions;
-        virtualOptions.vertices.share = source.exact ? 1 : share;
-        virtualOptions.vertices.search.thorough = false;
-        o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, virtualOptions);
-        o.drawn = std::make_unique<gl::ChromeMesh>(source.attributes);
-        o.lastTolerance = -1;
+CityChrome::Impl::Layer CityChrome::Impl::layerOf(const ChromeShown& shown, std::uint32_t piece,
+                                                  const PassView& pass, const Surroundings& around) {
+    const auto drawingOf = [&](std::uint32_t vehicle) {
+        if (around.textures == nullptr || vehicle >= around.slots.size() || !around.slots[vehicle].valid())
+            return Drawing::plain;
+        const auto sizeClass = static_cast<std::size_t>(around.slots[vehicle].sizeClass);
+        return around.textures->nearnessArrays[sizeClass] != 0 ? Drawing::parallax
+               : around.textures->cubeArrays[sizeClass] != 0   ? Drawing::map
+                                                               : Drawing::plain;
+    };
+    Layer l;
+    l.name = {around.poses[shown.job->vehicle].id, shown.job->part, shown.job->wheel, piece};
+    l.worldFromPart = shown.job->worldFromPart;
+    l.share = shown.job->share;
+    l.pixels = pixelsOfBox(clipFromPart(*shown.job, pass), drawnSize, pieceMesh(*shown.piece).box);
+    l.things.reserve(shown.objects.size());
+    for (const ChromeObject* o : shown.objects) {
+        Layer::Thing& thing = l.things.emplace_back();
+        thing.object = o;
+        thing.worldFromMesh = o->worldFromMesh;
+        if (o->vehicle == ChromeObject::noVehicle) {
+            thing.drawing = o->source->cutout ? Drawing::cutout : Drawing::solid;
+            continue;
+        }
+        const vehicles::VehiclePose& pose = around.poses[o->vehicle];
+        thing.drawing = drawingOf(o->vehicle);
+        thing.paint = glm::vec4(pose.paint, pose.braking ? 1.f : 0.f);
+        if (thing.drawing != Drawing::plain) thing.slot = around.slots[o->vehicle];
     }
-    return o;
+    return l;
 }
 
-void CityChrome::Impl::gatherCity(const ChromeJob& job, Kept& k) {
-    const glm::dvec3 place(job.worldFromPart[3]);
-    if (k.reach > 0 && job.reach <= k.reach * 1.001 && glm::length(place - k.place) <= patchLasts * job.reach)
+std::vector<bool> CityChrome::Impl::outdated(std::span<const ChromeShown> shown,
+                                             std::span<const Layer> layers, const Seen& seenAs,
+                                             const Surroundings& around) {
+    std::vector<bool> anew(layers.size(), !(seenAs == seenBefore));
+    std::vector<reflection::PixelRect> cleared;
+    const auto renewed = [&](const reflection::LocalMapSlot& slot) {
+        return slot.valid() && (around.renewed == nullptr || !skipped || contains(*around.renewed, slot) ||
+                                contains(*skipped, slot));
+    };
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Layer& l = layers[i];
+        const auto was = std::ranges::find_if(before, [&](const Layer& b) { return b.name == l.name; });
+        anew[i] = anew[i] || was == before.end() || !(*was == l) ||
+                  std::ranges::any_of(shown[i].objects, [](const auto* o) { return o->changed; }) ||
+                  std::ranges::any_of(l.things, [&](const auto& t) { return renewed(t.slot); });
+        if (anew[i]) cleared.push_back(l.pixels);
+    }
+    for (const Layer& b : before) {
+        const auto is = std::ranges::find_if(layers, [&](const Layer& l) { return b.name == l.name; });
+        if (is == layers.end() || anew[static_cast<std::size_t>(is - layers.begin())])
+            cleared.push_back(b.pixels);
+    }
+    // What is cleared with others is to be drawn anew, too.
+    const auto meet = [](const reflection::PixelRect& a, const reflection::PixelRect& b) {
+        return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
+    };
+    for (std::size_t i = 0; i < layers.size();) {
+        if (anew[i] ||
+            !std::ranges::any_of(cleared, [&](const auto& c) { return meet(c, layers[i].pixels); })) {
+            ++i;
+            continue;
+        }
+        anew[i] = true;
+        cleared.push_back(layers[i].pixels);
+        i = 0;
+    }
+    constexpr float far = 0;
+    glEnable(GL_SCISSOR_TEST);
+    for (const reflection::PixelRect& c : cleared) {
+        if (c.empty()) continue;
+        glScissor(c.low.x, c.low.y, c.size().x, c.size().y);
+        glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &far);
+    }
+    return anew;
+}
+
+void CityChrome::skip(const std::vector<reflection::LocalMapSlot>* renewed) {
+    Impl& my = *impl_;
+    if (renewed == nullptr || !my.skipped) {
+        my.skipped.reset();
         return;
-    k.objects.clear();  // they point into what goes
-    // What is gathered serves until the part has moved on.
-    k.place = place;
-    k.reach = job.reach;
-    k.city = closeMeshes(scene.standing.gather(place, (1 + patchLasts) * job.reach, placedDetail));
+    }
+    for (const reflection::LocalMapSlot& slot : *renewed)
+        if (!contains(*my.skipped, slot)) my.skipped->push_back(slot);
 }
 
 ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const PassView& pass,
@@ -201,178 +268,86 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
     const auto start = std::chrono::steady_clock::now();
     my.makeGlObjects();
     my.allocate(size);
-    ++my.frame;
+    my.drawnSize = size;
     ChromeCounts counts;
-
-    const auto drawingOf = [&](std::uint32_t vehicle) {
-        if (around.textures == nullptr || vehicle >= around.slots.size() || !around.slots[vehicle].valid())
-            return Drawing::plain;
-        const auto sizeClass = static_cast<std::size_t>(around.slots[vehicle].sizeClass);
-        return around.textures->nearnessArrays[sizeClass] != 0 ? Drawing::parallax
-               : around.textures->cubeArrays[sizeClass] != 0   ? Drawing::map
-                                                               : Drawing::plain;
-    };
-    struct Drawn {
-        const ChromeJob* job;
-        const reflection::ReflectorPiece* piece;
-        std::size_t first, last;  ///< of the tasks
-    };
-    std::vector<Drawn> drawn;
-    std::vector<Impl::Task> tasks;
-    for (const ChromeJob& job : plan.jobs) {
-        if (job.view != view) continue;
-        ++counts.jobs;
-        const vehicles::VehiclePose& own = around.poses[job.vehicle];
-        Impl::Kept& kept = my.kept[{view, own.id, job.part, job.wheel}];
-        kept.used = my.frame;
-        my.gatherCity(job, kept);
-        const glm::dmat4 partFromWorld = glm::inverse(job.worldFromPart);
-        const glm::dvec3 eye(partFromWorld * glm::dvec4(pass.eye, 1));
-        reflection::VirtualMeshOptions virtualOptions;
-        // Flat parts with sharp edges move images faster than grids follow, and edges would be halved in vain
-        // until they did.
-        const double share = stands(own) ? options.share : 1;
-        virtualOptions.vertices.share = share;
-        virtualOptions.vertices.search.thorough = false;
-        // The ground is cut off at the patch alone: its edges are as long as the patch.
-        virtualOptions.mostHalvings = mostHalvings;
-        virtualOptions.tolerance = options.tolerance / static_cast<double>(pass.pixelsPerRadian);
-        virtualOptions.vertices.cellTolerance = virtualOptions.tolerance;
-        const double distance = glm::length(eye);
-        if (distance > 1.1 * job.radius) {
-            const double sine = job.radius / distance;
-            virtualOptions.towards = -eye / distance;
-            virtualOptions.coneCosine = std::sqrt(1 - sine * sine);
-        }
-        const ChromePart& part = my.scene.parts.of(own.model)[job.part];
-        const reflection::Reflector& reflector = my.scene.parts.reflectorOf(part);
-        for (std::size_t p = 0; p < reflector.pieces.size(); ++p) {
-            const reflection::ReflectorPiece& piece = reflector.pieces[p];
-            if (piece.built.map.empty()) continue;
-            const std::size_t first = tasks.size();
-            const auto add = [&](Impl::Object& o, const glm::dmat4& worldFromMesh, Drawing drawing,
-                                 std::uint32_t vehicle) {
-                o.worldFromMesh = worldFromMesh;
-                o.drawing = drawing;
-                o.vehicle = vehicle;
-                tasks.push_back({&o, &piece.built.map, eye, partFromWorld * worldFromMesh, virtualOptions});
-            };
-            glm::dmat4 worldFromPatch(1);
-            worldFromPatch[3] = glm::dvec4(kept.place, 1);
-            for (std::uint32_t i = 0; i < kept.city.size(); ++i)
-                add(my.object(kept, p, 0, i, kept.city[i], 1), worldFromPatch,
-                    kept.city[i].cutout ? Drawing::cutout : Drawing::solid, 0);
-            for (const std::uint32_t index : job.close) {
-                const vehicles::VehiclePose& pose = around.poses[index];
-                // A thing at distance d is seen in a ball of radius r reduced as r / 2 to d; in parts of
-                // vehicles, which are flat here and round there, as large as in a plane mirror.
-                const double away = std::max(
-                    glm::length(pose.position - glm::dvec3(job.worldFromPart[3])) - job.radius, job.radius);
-                const double allowed = options.detail / static_cast<double>(pass.pixelsPerRadian) *
-                                       (stands(own) ? distance * (1 + 2 * away / job.radius) : distance);
-                std::uint32_t number = 0;
-                for (const CloseVehicles::Placed& placed : my.vehicles.of(pose, static_cast<float>(allowed)))
-                    add(my.object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, share),
-                        placed.worldFromMesh, drawingOf(index), index);
-            }
-            drawn.push_back({&job, &piece, first, tasks.size()});
-        }
+    const std::span<const ChromeShown> shown =
+        my.objects.update(plan, view, pass, around.poses, options, counts);
+    std::vector<Impl::Layer> layers;
+    layers.reserve(shown.size());
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const bool sameJob = i > 0 && shown[i].job == shown[i - 1].job;
+        layers.push_back(my.layerOf(shown[i], sameJob ? layers.back().name[3] + 1 : 0, pass, around));
     }
-    const auto searching = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-        Impl::Task& task = tasks[i];
-        Impl::Object& o = *task.object;
-        // Nothing moved: what was found last is there still.
-        o.changed = !(o.lastEye == task.eye && o.lastMesh == task.partFromMesh &&
-                      o.lastTolerance == task.options.tolerance);
-        if (!o.changed) return;
-        o.counts = o.mesh->update(*task.map, task.eye, task.partFromMesh, task.options);
-        o.lastEye = task.eye;
-        o.lastMesh = task.partFromMesh;
-        o.lastTolerance = task.options.tolerance;
-    });
-    counts.searchMilliseconds = milliseconds(searching);
 
     setDrawState();
     materials.bind();
-    glDisable(GL_CULL_FACE);
-    // Where vehicles that have jobs will look.
-    glBindFramebuffer(GL_FRAMEBUFFER, my.target.name());
-    glEnable(GL_SCISSOR_TEST);
-    constexpr std::array<float, 4> nothing{};
-    constexpr float far = 0;
-    for (const ChromeJob& job : plan.jobs) {
-        if (job.view != view) continue;
-        const vehicles::VehiclePose& pose = around.poses[job.vehicle];
-        const city::Aabb box = my.vehicles.boundsOf(pose);
-        const glm::vec3 centre(glm::dvec3(box.centre()) - pass.eye);
-        const reflection::PixelRect pixels =
-            pixelsOfBall(pass.clipFromRelative, size, centre, 0.5f * glm::length(box.size()));
-        glScissor(pixels.low.x, pixels.low.y, pixels.size().x, pixels.size().y);
-        glClearNamedFramebufferfv(my.target.name(), GL_COLOR, 0, nothing.data());
-        glClearNamedFramebufferfv(my.target.name(), GL_DEPTH, 0, &far);
-    }
-    for (const Drawn& d : drawn) {
-        const glm::dvec3 origin(d.job->worldFromPart[3]);
-        const glm::vec3 middle(origin - pass.eye);
-        const reflection::PixelRect pixels =
-            pixelsOfBall(pass.clipFromRelative, size, middle, static_cast<float>(d.job->radius));
-        if (pixels.empty()) continue;
-        my.layer->begin(size, pixels);
+    const Impl::Seen seenAs{pass.eye, pass.clipFromRelative, size, around.lighting};
+    const std::vector<bool> anew = my.outdated(shown, layers, seenAs, around);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Impl::Layer& l = layers[i];
+        // Of what is not seen now the image may have moved: it is handed over later.
+        if (!anew[i] || l.pixels.empty()) continue;
+        ++counts.drawn;
+        const ChromeJob& job = *shown[i].job;
+        const Impl::PieceMesh& mesh = my.pieceMesh(*shown[i].piece);
+        const glm::mat4 clipFromPart = Impl::clipFromPart(job, pass);
+        my.part.set("clipFromPart", clipFromPart);
+        my.part.set("share", job.share);
+        // Only the piece's own pixels are worth shading.
+        my.layer->begin(size, l.pixels);
+        my.layer->beginMask();
+        glEnable(GL_CULL_FACE);
+        my.part.use();
+        mesh.array.bind();
+        glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+        my.layer->endMask();
         glDisable(GL_CULL_FACE);
-        const glm::dmat3 turn(d.job->worldFromPart);
+        const glm::dmat3 turn(job.worldFromPart);
+        const glm::vec3 middle(glm::dvec3(job.worldFromPart[3]) - pass.eye);
         const glm::mat4 clipFromVirtual = pass.clipFromRelative * glm::mat4(glm::dmat4(turn));
-        for (std::size_t i = d.first; i < d.last; ++i) {
-            my.drawObject(*tasks[i].object, clipFromVirtual, glm::mat3(turn),
-                          glm::vec4(middle, static_cast<float>(d.job->reach)), pass.eye, around);
-            ++counts.meshes;
-            counts.vertices += tasks[i].object->mesh->vertices().size();
-            counts.searched += tasks[i].object->changed ? tasks[i].object->counts.searched : 0;
-            counts.triangles += tasks[i].object->mesh->indices().size() / 3;
+        for (std::size_t k = 0; k < l.things.size(); ++k) {
+            ChromeObject& o = *shown[i].objects[k];
+            if (o.stale) o.drawn->upload(*o.mesh, o.source->values);
+            o.stale = false;
+            my.drawThing(l.things[k], clipFromVirtual, glm::mat3(turn),
+                         glm::vec4(middle, static_cast<float>(job.reach)), pass.eye, around);
         }
         glBindFramebuffer(GL_FRAMEBUFFER, my.target.name());
         glEnable(GL_CULL_FACE);
-        glm::mat4 relativeFromPart{glm::dmat4(turn)};
-        relativeFromPart[3] = glm::vec4(middle, 1);
-        my.part.set("clipFromPart", pass.clipFromRelative * relativeFromPart);
-        my.part.set("share", d.job->share);
         my.part.use();
         glBindTextureUnit(5, my.layer->colour());
-        const Impl::PieceMesh& mesh = my.pieceMesh(*d.piece);
         mesh.array.bind();
         glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
     }
-    for (auto& [key, kept] : my.kept)
-        std::erase_if(kept.objects, [&](const auto& o) { return my.frame > o.second.used + framesKept; });
-    std::erase_if(my.kept, [&](const auto& k) { return my.frame > k.second.used + framesKept; });
+    my.before = std::move(layers);
+    my.seenBefore = seenAs;
+    my.skipped.emplace();
     setDrawState();
     counts.milliseconds = milliseconds(start);
     return counts;
 }
 
-void CityChrome::Impl::drawObject(Object& o, const glm::mat4& clipFromVirtual, const glm::mat3& worldFromPart,
-                                  const glm::vec4& closeAround, const glm::dvec3& eye,
-                                  const Surroundings& around) {
-    if (o.changed) o.drawn->upload(*o.mesh, o.source->values);
-    const gl::Program& program = programs[static_cast<std::size_t>(o.drawing)];
-    glm::dmat4 relativeFromMesh = o.worldFromMesh;
+void CityChrome::Impl::drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
+                                 const glm::mat3& worldFromPart, const glm::vec4& closeAround,
+                                 const glm::dvec3& eye, const Surroundings& around) {
+    const gl::Program& program = programs[static_cast<std::size_t>(thing.drawing)];
+    glm::dmat4 relativeFromMesh = thing.worldFromMesh;
     relativeFromMesh[3] -= glm::dvec4(eye, 0);
     program.set("clipFromVirtual", clipFromVirtual);
     program.set("relativeFromMesh", glm::mat4(relativeFromMesh));
     program.set("closeAround", closeAround);
     program.use();
-    if (o.drawing != Drawing::solid && o.drawing != Drawing::cutout) {
-        const vehicles::VehiclePose& pose = around.poses[o.vehicle];
+    if (thing.drawing != Drawing::solid && thing.drawing != Drawing::cutout) {
         program.set("worldFromReflector", worldFromPart);
-        program.set("paint", glm::vec4(pose.paint, pose.braking ? 1.f : 0.f));
-        if (o.drawing != Drawing::plain) {
-            const reflection::LocalMapSlot slot = around.slots[o.vehicle];
-            const auto sizeClass = static_cast<std::size_t>(slot.sizeClass);
-            glm::vec4 map(0, 0, 0, slot.layer);
-            if (o.drawing == Drawing::parallax) {
+        program.set("paint", thing.paint);
+        if (thing.drawing != Drawing::plain) {
+            const auto sizeClass = static_cast<std::size_t>(thing.slot.sizeClass);
+            glm::vec4 map(0, 0, 0, thing.slot.layer);
+            if (thing.drawing == Drawing::parallax) {
                 map = glm::vec4(
-                    glm::vec3(around.textures->centres[sizeClass][static_cast<std::size_t>(slot.layer)] -
-                              eye),
+                    glm::vec3(
+                        around.textures->centres[sizeClass][static_cast<std::size_t>(thing.slot.layer)] -
+                        eye),
                     map.w);
                 glBindTextureUnit(4, around.textures->nearnessArrays[sizeClass]);
             }
@@ -381,7 +356,7 @@ void CityChrome::Impl::drawObject(Object& o, const glm::mat4& clipFromVirtual, c
             glBindTextureUnit(2, around.textures->cubeArrays[sizeClass]);
         }
     }
-    o.drawn->draw();
+    thing.object->drawn->draw();
     glBindSampler(2, 0);
 }
 

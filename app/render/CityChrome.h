@@ -9,9 +9,9 @@
 #include "app/frame/ChromeDrawing.h"
 #include "app/frame/ChromePlan.h"
 #include "app/frame/CloseScene.h"
+#include "app/frame/Lighting.h"
 #include "app/render/CityMaterials.h"
 #include "app/render/PassTarget.h"
-#include "reflection/chrome/VirtualMesh.h"
 #include "reflection/gl/LocalMapTextures.h"
 #include "vehicles/traffic/VehiclePose.h"
 
@@ -31,12 +31,18 @@ class CityChrome {
         /// What close vehicles' paint mirrors; null: plain paint.
         const reflection::LocalMapTextures* textures = nullptr;
         std::span<const reflection::LocalMapSlot> slots;
+        /// Of these, the maps that changed since the call before; null: any may have.
+        const std::vector<reflection::LocalMapSlot>* renewed = nullptr;
+        Lighting lighting = {};
     };
-    /// The jobs of one of the plan's views, drawn `size` pixels large. The uniform block Frame must hold the
-    /// view. Leaves another framebuffer bound, and setDrawState's state.
+    /// The jobs of one of the plan's views, drawn `size` pixels large. What looks as in the call before stays
+    /// as it is. The uniform block Frame must hold the view. Leaves another framebuffer bound, and
+    /// setDrawState's state.
     ChromeCounts draw(const ChromePlan& plan, std::uint32_t view, const PassView& pass, glm::ivec2 size,
                       const CityMaterials& materials, const Surroundings& around,
                       const ChromeDrawing& options);
+    /// A frame was drawn without: what changed in it counts for the next call.
+    void skip(const std::vector<reflection::LocalMapSlot>* renewed);
 
     /// GL names: RGBA16F, linear radiance and its share over the local map's; reversed depth of the chrome.
     /// Valid in the pixels of vehicles that have jobs.

@@ -33,6 +33,7 @@ std::unique_ptr<CloseMesh> meshFrom(const city::Mesh& mesh, const std::vector<st
         }
         made->indices.push_back(place[index]);
     }
+    for (const glm::vec3& p : made->positions) made->box.extend(p);
     return made;
 }
 
@@ -50,6 +51,7 @@ std::vector<CloseMesh> closeMeshes(const CloseCityPatch& patch) {
             m.attributes = {3, 2, 3, 1};
             for (const city::Vertex& v : mesh.vertices) {
                 m.positions.push_back(v.position);
+                m.box.extend(v.position);
                 m.values.insert(m.values.end(),
                                 {v.position.x, v.position.y, v.position.z, v.texcoord.x, v.texcoord.y,
                                  v.normal.x, v.normal.y, v.normal.z, static_cast<float>(v.material)});
@@ -86,14 +88,13 @@ std::span<const CloseVehicles::Placed> CloseVehicles::of(const vehicles::Vehicle
     return placed_;
 }
 
-city::Aabb CloseVehicles::boundsOf(const vehicles::VehiclePose& pose) {
+city::Aabb CloseVehicles::boxOf(const vehicles::VehiclePose& pose) {
     city::Aabb box;
     if (pose.model >= models_.size()) return box;
     const VehicleLevels& levels = levelsOf(pose.model);
-    const glm::mat3 turn = worldFromVehicle(pose);
-    const glm::vec3 centre = glm::vec3(pose.position) + turn * levels.centre;
-    box.extend(centre - glm::vec3(levels.radius));
-    box.extend(centre + glm::vec3(levels.radius));
+    if (levels.bodies.empty()) return box;
+    box.extend(levels.centre - levels.halfSize);
+    box.extend(levels.centre + levels.halfSize);
     return box;
 }
 

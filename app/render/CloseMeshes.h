@@ -21,6 +21,7 @@ struct CloseMesh {
     std::vector<std::uint32_t> indices;
     std::vector<int> attributes;  ///< floats of each attribute of `values`, as shaders with VIRTUAL take them
     std::vector<float> values;    ///< of all vertices
+    city::Aabb box;               ///< of the positions
     bool cutout = false;          ///< with holes where its pattern is transparent
     /// Its vertices stand too far apart for a grid to be between them: each is searched for.
     bool exact = false;
@@ -38,11 +39,11 @@ class CloseVehicles {
         const CloseMesh* mesh = nullptr;
         glm::dmat4 worldFromMesh{1};
     };
-    /// Body and wheels at the coarsest levels that are off by no more than `allowed` metres. Good until the
-    /// next call.
+    /// Body and wheels at the coarsest levels that are off by no more than `allowed` metres. The span is good
+    /// until the next call, the meshes as long as this.
     std::span<const Placed> of(const vehicles::VehiclePose& pose, float allowed);
-    /// World box of a vehicle, wide enough for its wheels.
-    city::Aabb boundsOf(const vehicles::VehiclePose& pose);
+    /// What a vehicle fills, wide enough for its wheels, in its own frame.
+    city::Aabb boxOf(const vehicles::VehiclePose& pose);
 
   private:
     const CloseMesh& meshOf(const VehicleLevels::Level& level);

@@ -131,6 +131,7 @@ void SceneRenderer::Impl::drawChrome(const PassView& pass, const VehicleReflecti
             if (job.view == close.view && job.vehicle < poses.size()) withChrome.push_back(job.vehicle);
     if (withChrome.empty()) {
         constexpr std::uint32_t patience = 60;
+        if (cityChrome) cityChrome->skip(reflections.renewed ? &*reflections.renewed : nullptr);
         if (cityChrome && ++framesWithoutChrome > patience) cityChrome.reset();
         return;
     }
@@ -139,7 +140,9 @@ void SceneRenderer::Impl::drawChrome(const PassView& pass, const VehicleReflecti
     if (!cityChrome) cityChrome = std::make_unique<CityChrome>(*closeScene);
     counters.chrome =
         cityChrome->draw(*close.plan, close.view, pass, viewTarget.drawn(), cityPass.materials(),
-                         {poses, &reflections.textures, reflections.slots}, close.drawing);
+                         {poses, &reflections.textures, reflections.slots,
+                          reflections.renewed ? &*reflections.renewed : nullptr, lighting},
+                         close.drawing);
     counters.chromeTextureBytes = cityChrome->bytes();
     mirrored.closeLight = cityChrome->light();
     mirrored.closeDepth = cityChrome->depth();

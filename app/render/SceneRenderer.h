@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct VehicleReflections {
     /// GL name of a ScreenLight's texture for this view: what each pixel mirrors, in place of all maps. 0:
     /// none.
     std::uint32_t mirrored = 0;
+    /// Maps that are not what they were when this renderer drew before; nothing: any may be. What shows them
+    /// and did not move is not drawn again while they stay.
+    std::optional<std::vector<reflection::LocalMapSlot>> renewed = {};
 };
 
 /// What the city's windows mirror in a view.

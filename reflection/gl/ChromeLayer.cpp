@@ -31,6 +31,21 @@ void ChromeLayer::begin(const glm::ivec2& viewSize, const PixelRect& rectangle) 
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &far);
 }
 
+void ChromeLayer::beginMask() {
+    constexpr float nearest = 1;
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &nearest);
+    // Every pixel that is drawn becomes infinitely far.
+    glDepthFunc(GL_ALWAYS);
+    glDepthRangef(0, 0);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+}
+
+void ChromeLayer::endMask() {
+    glDepthFunc(GL_GEQUAL);
+    glDepthRangef(0, 1);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 ChromeMesh::ChromeMesh(std::vector<int> attributes) {
     for (const int floats : attributes) stride_ += static_cast<std::size_t>(floats);
     array_.buffer(0, places_.name(), sizeof(VirtualVertex))

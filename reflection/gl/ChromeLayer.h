@@ -23,6 +23,10 @@ class ChromeLayer {
     /// to nothing, depth (reversed) to infinitely far. Grows to the view's size when needed. Sets depth test
     /// and scissor; the caller restores what it needs.
     void begin(const glm::ivec2& viewSize, const PixelRect& rectangle);
+    /// After `begin`: from here on, what is drawn opens the layer where it covers it, and all the rest of the
+    /// rectangle stays closed to what comes after `endMask`, which then costs nothing there.
+    void beginMask();
+    void endMask();
     GLuint colour() const { return colour_.name(); }
     std::size_t bytes() const {
         return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * 12;

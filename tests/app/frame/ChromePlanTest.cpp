@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "app/frame/CloseImages.h"
 #include "app/frame/CloseScene.h"
 #include "app/frame/StandingReflectors.h"
 #include "city/model/CityModel.h"
@@ -217,6 +219,57 @@ TEST(ChromePlan, BallsLieWithinTheirPixels) {
         EXPECT_TRUE(p.y >= static_cast<float>(pixels.low.y) && p.y <= static_cast<float>(pixels.high.y));
     }
     EXPECT_LT(pixels.area(), all.area() / 8);
+}
+
+TEST(CloseImages, AreNoSmallerThanWhatIsSeenAndHiddenOnlyBehind) {
+    const World world(5);
+    const ChromePart& part = world.parts.of(1)[0];
+    const reflection::ReflectorMap& map = world.parts.reflectorOf(part).pieces[0].built.map;
+    const glm::dvec3 eye(5, 0, 0);
+    std::uint32_t state = 1;
+    const auto random = [&](double low, double high) {
+        state = state * 1664525u + 1013904223u;
+        return low + (high - low) * (state >> 8) / 16777216.0;
+    };
+    std::vector<CloseBox> boxes;
+    for (int i = 0; i < 200; ++i) {
+        const glm::vec3 low(random(-6, 4), random(-5, 5), random(-3, 3));
+        city::Aabb box;
+        box.extend(low);
+        box.extend(low + glm::vec3(random(0.1, 2), random(0.1, 2), random(0.1, 2)));
+        boxes.push_back({box, glm::dmat4(1)});
+    }
+    boxes.push_back({{}, glm::dmat4(1)});
+    const std::vector<CloseImage> images = closeImages(map, 1, eye, boxes);
+    int hidden = 0, known = 0;
+    for (std::size_t i = 0; i + 1 < boxes.size(); ++i) {
+        const glm::dvec3 low(boxes[i].box.min), high(boxes[i].box.max);
+        for (int k = 0; k < 40; ++k) {
+            const glm::dvec3 p(random(low.x, high.x), random(low.y, high.y), random(low.z, high.z));
+            const std::array<glm::dvec3, 2> both{p,
+                                                 p + 1e-3 * glm::dvec3(0, 0, p.z > high.z - 2e-3 ? -1 : 1)};
+            std::array<reflection::ReflectionPoint, 2> points;
+            reflection::findReflectionPoints(map, eye, both, points);
+            if (images[i].hidden) {
+                EXPECT_EQ(points[0].status, reflection::ReflectionStatus::hidden);
+                continue;
+            }
+            if (points[0].status != reflection::ReflectionStatus::found ||
+                points[1].status != reflection::ReflectionStatus::found)
+                continue;
+            const double angle =
+                glm::length(glm::normalize(reflection::virtualVertex(points[0], both[0]) - eye) -
+                            glm::normalize(reflection::virtualVertex(points[1], both[1]) - eye));
+            // The nearest place is not quite where an image is largest: near the outline others are.
+            EXPECT_LT(angle * images[i].metresPerRadian, 2 * 1e-3) << i;
+            ++known;
+        }
+        hidden += images[i].hidden;
+        EXPECT_GT(images[i].angle, 0);
+    }
+    EXPECT_GT(hidden, 2);
+    EXPECT_GT(known, 2000);
+    EXPECT_TRUE(images.back().hidden);
 }
 
 TEST(ChromeParts, BumpersCoversMirrorCapsAndHandlesAreWholeConvexBodies) {

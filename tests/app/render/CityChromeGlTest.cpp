@@ -191,5 +191,48 @@ TEST_F(CityChromeGlTest, withoutJobsThePictureIsTheSameAndNothingIsMade) {
     EXPECT_LT(most, 0.1f);
 }
 
+TEST_F(CityChromeGlTest, whatStandsIsNeitherSearchedForNorDrawnAnew) {
+    stand(city::StandingReflector::Shape::sphere, 1, 2);
+    VehicleReflections maps = rerendered();
+    maps.renewed.emplace();
+    const auto counts = [&] { return renderer_->counters().chrome; };
+    const ChromePlan first = plan();
+    const std::vector<glm::vec3> before = draw(maps, &first);
+    EXPECT_EQ(counts().drawn, 1u);
+    EXPECT_GT(counts().searched, 100u);
+    EXPECT_EQ(draw(maps, &first), before);
+    EXPECT_EQ(counts().drawn, 0u);
+    EXPECT_EQ(counts().searched, 0u);
+    // Frames without it change nothing in what is kept.
+    draw(maps, nullptr);
+    EXPECT_EQ(draw(maps, &first), before);
+    EXPECT_EQ(counts().drawn, 0u);
+    // A map that is another one does, and so do a share and a car that moved; each as if all were drawn.
+    maps.renewed->push_back(maps.slots[1]);
+    EXPECT_EQ(draw(maps, &first), before);
+    EXPECT_EQ(counts().drawn, 1u);
+    maps.renewed->clear();
+    ChromePlan half = first;
+    half.jobs[0].share = 0.5f;
+    EXPECT_NE(draw(maps, &half), before);
+    EXPECT_EQ(counts().drawn, 1u);
+    frame_.vehicles.back().position.y += 0.3;
+    renderer_->prepare(frame_);
+    const ChromePlan moved = plan();
+    const std::vector<glm::vec3> after = draw(maps, &moved);
+    EXPECT_EQ(counts().drawn, 1u);
+    EXPECT_GT(counts().searched, 100u);
+    EXPECT_NE(after, before);
+    maps.renewed.reset();
+    EXPECT_EQ(draw(maps, &moved), after);
+    EXPECT_EQ(counts().drawn, 1u);
+    // The same view after another one.
+    view_ = lookAt({3.2, -2.6, 1.7}, {0, 0, 1.2}, glm::radians(40.0), size);
+    frame_.views = {view_};
+    const ChromePlan other = plan();
+    draw(maps, &other);
+    EXPECT_EQ(counts().drawn, 1u);
+}
+
 }  // namespace
 }  // namespace app

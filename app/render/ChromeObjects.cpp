@@ -1,0 +1,204 @@
+#include "app/render/ChromeObjects.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "app/frame/VehicleShading.h"
+
+namespace app {
+
+namespace {
+
+/// Frames for which the meshes of a job are kept that is not there any more.
+constexpr std::uint64_t framesKept = 30;
+/// A patch of the city is gathered anew when its part has moved by this share of its reach, or when it is
+/// seen from a distance that differs by this factor: its things' levels were chosen for another.
+constexpr double patchLasts = 0.2, detailLasts = 1.5;
+/// Each more doubles the searches, all of them at the outline, where images crowd.
+constexpr int mostHalvings = 6;
+/// Pixels across below which an image is left out.
+constexpr double leastImage = 0.7;
+/// Of a job's reach: things that begin beyond it are covered by the map to less than one part in fifty.
+constexpr double reachShown = 0.93;
+
+glm::dmat4 placedAt(const glm::dvec3& origin) {
+    glm::dmat4 m(1);
+    m[3] = glm::dvec4(origin, 1);
+    return m;
+}
+
+/// Metres from a frame's origin to a box somewhere in it.
+double awayFrom(const glm::dvec3& place, const city::Aabb& box) {
+    return glm::length(
+        glm::max(glm::max(glm::dvec3(box.min) - place, place - glm::dvec3(box.max)), glm::dvec3(0)));
+}
+
+}  // namespace
+
+ChromeObject& ChromeObjects::object(Kept& job, std::size_t piece, std::uint64_t thing, std::uint32_t index,
+                                    const CloseMesh& source, double share) {
+    ChromeObject& o = job.objects[{piece, thing, index}];
+    o.used = frame_;
+    if (o.source != &source) {
+        o.source = &source;
+        reflection::VirtualMeshOptions virtualOptions;
+        virtualOptions.vertices.share = source.exact ? 1 : share;
+        virtualOptions.vertices.search.thorough = false;
+        o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, virtualOptions);
+        o.drawn = std::make_unique<reflection::gl::ChromeMesh>(source.attributes);
+        o.lastTolerance = -1;
+    }
+    return o;
+}
+
+void ChromeObjects::gatherCity(const ChromeJob& job, const reflection::ReflectorMap& map,
+                               const glm::dvec3& eye, double radiansOff, Kept& k) {
+    const glm::dvec3 place(job.worldFromPart[3]);
+    const double metresPerPixel = radiansOff * glm::length(eye);
+    if (k.reach > 0 && job.reach <= k.reach * 1.001 &&
+        glm::length(place - k.place) <= patchLasts * job.reach &&
+        metresPerPixel < detailLasts * k.metresPerPixel && k.metresPerPixel < detailLasts * metresPerPixel)
+        return;
+    k.objects.clear();  // they point into what goes
+    k.looks.clear();
+    // What is gathered serves until the part has moved on.
+    k.place = place;
+    k.reach = job.reach;
+    k.metresPerPixel = metresPerPixel;
+    const glm::dmat4 partFromPatch = glm::inverse(job.worldFromPart) * placedAt(place);
+    k.city =
+        closeMeshes(scene_.standing.gather(place, (1 + patchLasts) * job.reach, [&](const city::Aabb& box) {
+            const CloseBox asked{box, partFromPatch};
+            return closeImages(map, job.radius, eye, {&asked, 1}).front().metresPerRadian * radiansOff;
+        }));
+}
+
+std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::uint32_t view,
+                                                   const PassView& pass,
+                                                   std::span<const vehicles::VehiclePose> poses,
+                                                   const ChromeDrawing& options, ChromeCounts& counts) {
+    ++frame_;
+    shown_.clear();
+    tasks_.clear();
+    const auto pixelsPerRadian = static_cast<double>(pass.pixelsPerRadian);
+    std::vector<CloseBox> boxes;
+    for (const ChromeJob& job : plan.jobs) {
+        if (job.view != view) continue;
+        ++counts.jobs;
+        const vehicles::VehiclePose& own = poses[job.vehicle];
+        Kept& kept = kept_[{view, own.id, job.part, job.wheel}];
+        kept.used = frame_;
+        const glm::dmat4 partFromWorld = glm::inverse(job.worldFromPart);
+        const glm::dvec3 eye(partFromWorld * glm::dvec4(pass.eye, 1));
+        const double radiansOff = options.detail / pixelsPerRadian;
+        reflection::VirtualMeshOptions virtualOptions;
+        virtualOptions.vertices.search.thorough = false;
+        // The ground is cut off at the patch alone: its edges are as long as the patch.
+        virtualOptions.mostHalvings = mostHalvings;
+        virtualOptions.tolerance = options.tolerance / pixelsPerRadian;
+        virtualOptions.vertices.cellTolerance = 0.5 * virtualOptions.tolerance;
+        const double distance = glm::length(eye);
+        if (distance > 1.1 * job.radius) {
+            const double sine = job.radius / distance;
+            virtualOptions.towards = -eye / distance;
+            virtualOptions.coneCosine = std::sqrt(1 - sine * sine);
+        }
+        const ChromePart& part = scene_.parts.of(own.model)[job.part];
+        const reflection::Reflector& reflector = scene_.parts.reflectorOf(part);
+        if (reflector.pieces.empty()) continue;
+        gatherCity(job, reflector.pieces.front().built.map, eye, radiansOff, kept);
+        kept.looks.resize(reflector.pieces.size());
+        const glm::dmat4 worldFromPatch = placedAt(kept.place);
+        const glm::dvec3 inPatch = glm::dvec3(job.worldFromPart[3]) - kept.place;
+        for (std::size_t p = 0; p < reflector.pieces.size(); ++p) {
+            const reflection::ReflectorPiece& piece = reflector.pieces[p];
+            if (piece.built.map.empty()) continue;
+            ChromeShown& shown = shown_.emplace_back();
+            shown.job = &job;
+            shown.piece = &piece;
+            const auto add = [&](ChromeObject& o, const glm::dmat4& worldFromMesh, std::uint32_t vehicle) {
+                o.worldFromMesh = worldFromMesh;
+                o.vehicle = vehicle;
+                shown.objects.push_back(&o);
+                tasks_.push_back({&o, &piece.built.map, eye, partFromWorld * worldFromMesh, virtualOptions});
+            };
+            boxes.clear();
+            for (const CloseMesh& mesh : kept.city)
+                boxes.push_back({mesh.box, partFromWorld * worldFromPatch});
+            for (const std::uint32_t index : job.close) {
+                const vehicles::VehiclePose& pose = poses[index];
+                const glm::dmat3 turn(worldFromVehicle(pose));
+                boxes.push_back(
+                    {vehicles_.boxOf(pose),
+                     partFromWorld * glm::dmat4(glm::dvec4(turn[0], 0), glm::dvec4(turn[1], 0),
+                                                glm::dvec4(turn[2], 0), glm::dvec4(pose.position, 1))});
+            }
+            Look& look = kept.looks[p];
+            if (look.eye != eye || look.boxes != boxes) {
+                look.images = closeImages(piece.built.map, job.radius, eye, boxes);
+                look.eye = eye;
+                look.boxes = boxes;
+                counts.searched += searchesOfBox * boxes.size();
+            }
+            const std::vector<CloseImage>& images = look.images;
+            const auto leftOut = [&](const CloseImage& image) {
+                return image.hidden || image.angle * pixelsPerRadian < leastImage;
+            };
+            for (std::uint32_t i = 0; i < kept.city.size(); ++i) {
+                if (leftOut(images[i]) || awayFrom(inPatch, kept.city[i].box) > reachShown * job.reach) {
+                    ++counts.leftOut;
+                    continue;
+                }
+                add(object(kept, p, 0, i, kept.city[i], 1), worldFromPatch, ChromeObject::noVehicle);
+            }
+            for (std::size_t k = 0; k < job.close.size(); ++k) {
+                const CloseImage& image = images[kept.city.size() + k];
+                if (leftOut(image)) {
+                    ++counts.leftOut;
+                    continue;
+                }
+                const vehicles::VehiclePose& pose = poses[job.close[k]];
+                std::uint32_t number = 0;
+                for (const CloseVehicles::Placed& placed :
+                     vehicles_.of(pose, static_cast<float>(image.metresPerRadian * radiansOff)))
+                    add(object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, options.share),
+                        placed.worldFromMesh, job.close[k]);
+            }
+        }
+    }
+    const auto searching = std::chrono::steady_clock::now();
+    tbb::parallel_for(std::size_t{0}, tasks_.size(), [&](std::size_t i) {
+        Task& task = tasks_[i];
+        ChromeObject& o = *task.object;
+        // Nothing moved: what was found last is there still.
+        o.changed = !(o.lastEye == task.eye && o.lastMesh == task.partFromMesh &&
+                      o.lastTolerance == task.options.tolerance);
+        if (!o.changed) return;
+        o.counts = o.mesh->update(*task.map, task.eye, task.partFromMesh, task.options);
+        o.stale = true;
+        o.lastEye = task.eye;
+        o.lastMesh = task.partFromMesh;
+        o.lastTolerance = task.options.tolerance;
+    });
+    counts.searchMilliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - searching).count();
+    for (const Task& task : tasks_) {
+        ++counts.meshes;
+        counts.vertices += task.object->mesh->vertices().size();
+        counts.searched += task.object->changed ? task.object->counts.searched : 0;
+        counts.triangles += task.object->mesh->indices().size() / 3;
+    }
+    for (auto& [key, kept] : kept_)
+        std::erase_if(kept.objects, [&](const auto& o) { return frame_ > o.second.used + framesKept; });
+    std::erase_if(kept_, [&](const auto& k) { return frame_ > k.second.used + framesKept; });
+    return shown_;
+}
+
+}  // namespace app
