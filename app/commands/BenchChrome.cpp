@@ -14,9 +14,12 @@ namespace app {
 
 namespace {
 
+MirrorWorld namedWorld(const char* file) {
+    return loadMirrorWorld(reflection::gl::dataFolder() / "scenes" / file);
+}
+
 MirrorWorld chromeWorld(const Options& options) {
-    if (options.city == Options().city)
-        return loadMirrorWorld(reflection::gl::dataFolder() / "scenes" / "kitchen.json");
+    if (options.city == Options().city) return namedWorld("kitchen.json");
     if (!options.city.ends_with(".json"))
         throw std::runtime_error(
             "'" + options.city +
@@ -61,6 +64,10 @@ int benchChrome(const Options& options) {
     if (wanted("still")) add(chromeStills(stage, how));
     if (wanted("frame")) add(chromeFrames(stage, how));
     if (wanted("picture")) add(chromePictures(stage, how));
+    if (wanted("bounces")) {
+        if (options.city == Options().city) add(chromeBounces(namedWorld("balls.json"), how));
+        if (!how.stop()) add(chromeBounces(world, how));
+    }
     if (wanted("none")) add(chromeNone(stage, how));
     std::vector<std::vector<std::string>> last;
     for (const MirrorRows& part : parts) {

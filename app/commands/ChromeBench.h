@@ -53,8 +53,8 @@ MirrorRows publishedSearches(const ChromeStage& stage, const ChromeBenchOptions&
 /// neighbours do. Needs no graphics.
 MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& options);
 
-/// How often the three below tell of their progress.
-constexpr std::size_t chromePictureSteps = 10;
+/// How often the four below tell of their progress.
+constexpr std::size_t chromePictureSteps = 12;
 
 /// Whole frames by share. Needs a context, as the next two.
 MirrorRows chromeFrames(const ChromeStage& stage, const ChromeBenchOptions& options);
@@ -62,6 +62,10 @@ MirrorRows chromeFrames(const ChromeStage& stage, const ChromeBenchOptions& opti
 /// Pictures by environment maps, by searched reflection points and by rays: error over the chrome's pixels,
 /// and cost.
 MirrorRows chromePictures(const ChromeStage& stage, const ChromeBenchOptions& options);
+
+/// What chrome parts show of each other, by depth 1 (maps alone) to 4: error over the pixels in which rays
+/// meet two and three mirrors, pictures planned, cost.
+MirrorRows chromeBounces(const MirrorWorld& world, const ChromeBenchOptions& options);
 
 /// What close chrome costs where there is none to see.
 MirrorRows chromeNone(const ChromeStage& stage, const ChromeBenchOptions& options);

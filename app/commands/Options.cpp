@@ -268,7 +268,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
         parser.add_option("--part", o.part, "one part of the measurement alone")
             ->type_name("NAME")
             ->check(CLI::IsMember(std::vector<std::string>{"search", "gpu", "share", "published", "still",
-                                                           "frame", "picture", "none"}));
+                                                           "frame", "picture", "bounces", "none"}));
     if (groups & searchOption)
         addNamed(parser, "--chrome-search", o.chromeSearch, chromeSearchNames,
                  "who searches where pictures with chrome search for everything (default auto: gpu, but cpu "

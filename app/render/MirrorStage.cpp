@@ -17,7 +17,13 @@ using reflection::MirrorTarget;
 struct MirrorStage::Impl {
     Impl(const MirrorWorld& w, glm::ivec2 s, reflection::CurvedMaps c,
          const reflection::MirrorPassOptions& options)
-        : world(w), size(s), curved(c), arrays(w), renderer(w, c, options.nearness), pass(options) {
+        : world(w),
+          size(s),
+          curved(c),
+          nearness(options.nearness),
+          arrays(w),
+          renderer(w, c, options.nearness),
+          pass(options) {
         const bool bytes = options.format == reflection::MirrorFormat::rgba8;
         colour = gl::Texture::image2D(bytes ? GL_RGBA8 : GL_RGBA16F, size.x, size.y);
         depth = gl::Texture::image2D(GL_DEPTH32F_STENCIL8, size.x, size.y);
@@ -50,6 +56,7 @@ struct MirrorStage::Impl {
     const MirrorWorld& world;
     glm::ivec2 size;
     reflection::CurvedMaps curved;
+    bool nearness;
     MirrorWorldScene arrays;
     MirrorWorldRenderer renderer;
     reflection::MirrorPass pass;
@@ -85,14 +92,25 @@ const reflection::ReflectionTree& MirrorStage::draw(reflection::TreeSettings set
     my.pass.drawReflections(my.tree, 0, my.renderer, my.target);
     my.renderer.finishRoot(my.tree, 0);
     my.chromeFrame = {};
-    if (my.chrome) my.chromeFrame = my.chrome->draw(my.tree.roots[0].view, my.size, my.framebuffer.name());
+    if (my.chrome)
+        my.chromeFrame = my.chrome->draw(my.tree.roots[0].view, my.size, my.framebuffer.name(),
+                                         {my.renderer.environments(), my.nearness});
     return my.tree;
 }
 
-void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options, bool concave) {
+void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options, bool concave,
+                            reflection::ChromeTreeOptions bounces) {
     Impl& my = *impl_;
-    my.chrome.emplace(my.world, options, concave);
-    for (std::size_t c = 0; c < my.world.curved.size(); ++c) my.renderer.setLeftOut(c, my.chrome->closeTo(c));
+    // Only cube maps can be looked up from where another reflector is seen.
+    if (my.curved != reflection::CurvedMaps::cube) bounces.depth = 1;
+    my.chrome.emplace(my.world, options, concave, bounces);
+    for (std::size_t c = 0; c < my.world.curved.size(); ++c)
+        my.renderer.setLeftOut(c, my.chrome->closeTo(c), my.chrome->chromeCloseTo(c));
+}
+
+const reflection::ChromeTree& MirrorStage::chromeTree() const {
+    static const reflection::ChromeTree none;
+    return impl_->chrome ? impl_->chrome->tree() : none;
 }
 
 void MirrorStage::searchChromeOnGpu() {

@@ -28,10 +28,13 @@ class MirrorStage {
 
     /// From now on curved reflectors show what is close by searched reflection points. Environment maps then
     /// leave it out. `concave`: see MirrorWorldChrome.
-    void setChrome(const reflection::VirtualMeshOptions& options, bool concave = true);
+    /// `bounces`: what they show of each other, with cube maps; by default nothing but maps.
+    void setChrome(const reflection::VirtualMeshOptions& options, bool concave = true,
+                   reflection::ChromeTreeOptions bounces = {.depth = 1});
     /// After setChrome, before a frame: see MirrorWorldChrome.
     void searchChromeOnGpu();
     const ChromeFrame& chromeFrame() const;  ///< of the last frame
+    const reflection::ChromeTree& chromeTree() const;
 
     /// Linear radiance, row 0 at the top. Waits.
     std::vector<glm::vec3> read() const;

@@ -1,24 +1,16 @@
-#include "app/render/MirrorWorldChrome.h"
-
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <map>
-#include <optional>
 
 #include "app/mirrors/LitShapes.h"
+#include "app/render/MirrorWorldChromeImpl.h"
 #include "reflection/chrome/ReflectorPieces.h"
-#include "reflection/gl/ChromeLayer.h"
-#include "reflection/gl/ChromeSearchMesh.h"
-#include "reflection/gl/Program.h"
 
 namespace app {
-
-namespace gl = reflection::gl;
 
 namespace {
 
@@ -26,15 +18,11 @@ namespace {
 /// over the reflector its direction differs by less than one part in so many.
 constexpr double closeRadii = 12;
 
-/// An object's corners, each place and colour once: triangles that meet without a crease share searches.
-struct Welded {
-    std::vector<glm::vec3> positions;
-    std::vector<float> colours;
-    std::vector<std::uint32_t> indices;
-};
+/// Points of a reflector by which others see it.
+constexpr std::size_t bodyPoints = 48;
 
-Welded weld(const LitMesh& mesh) {
-    Welded out;
+WeldedMesh weld(const LitMesh& mesh) {
+    WeldedMesh out;
     std::map<std::array<float, 6>, std::uint32_t> known;
     std::vector<std::uint32_t> ids;
     for (const LitMesh::Corner& c : mesh.corners) {
@@ -43,7 +31,7 @@ Welded weld(const LitMesh& mesh) {
                                                    static_cast<std::uint32_t>(out.positions.size()));
         if (added) {
             out.positions.push_back(p);
-            out.colours.insert(out.colours.end(), {l.r, l.g, l.b});
+            out.values.insert(out.values.end(), {l.r, l.g, l.b});
         }
         ids.push_back(at->second);
     }
@@ -53,28 +41,6 @@ Welded weld(const LitMesh& mesh) {
 
 double distanceTo(const city::Aabb& box, const glm::dvec3& p) {
     return glm::length(glm::max(glm::max(glm::dvec3(box.min) - p, p - glm::dvec3(box.max)), glm::dvec3(0)));
-}
-
-/// The pixels in which a ball may be seen; all where the eye is close to it.
-reflection::PixelRect pixelsOf(const reflection::EyeView& view, const glm::ivec2& size,
-                               const glm::dvec3& centre, double radius) {
-    const reflection::PixelRect all{glm::ivec2(0), size};
-    const glm::dvec3 c = glm::dmat3(view.viewFromWorld) * (centre - view.eye);
-    if (c.z > radius) return {glm::ivec2(0), glm::ivec2(0)};
-    if (-c.z <= 1.1 * radius) return all;
-    // The box around the ball, at its nearest depth.
-    glm::dvec2 low(1e9), high(-1e9);
-    for (const double z : {c.z + radius, c.z - radius})
-        for (const double x : {c.x - radius, c.x + radius})
-            for (const double y : {c.y - radius, c.y + radius}) {
-                const glm::dvec4 clip = view.clipFromView * glm::dvec4(x, y, z, 1);
-                const glm::dvec2 p = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
-                low = glm::min(low, p), high = glm::max(high, p);
-            }
-    const auto inside = [&](const glm::dvec2& p) {
-        return glm::ivec2(glm::clamp(p, glm::dvec2(0), glm::dvec2(size)));
-    };
-    return {inside(glm::floor(low)), inside(glm::ceil(high))};
 }
 
 /// Whether some triangle shows the eye its front.
@@ -90,94 +56,105 @@ bool faces(const city::Mesh& mesh, const glm::vec3& eye) {
 
 }  // namespace
 
-struct MirrorWorldChrome::Impl {
-    struct Object {
-        std::size_t index;
-        reflection::VirtualMesh mesh;
-        std::optional<gl::ChromeMesh> drawn;
-    };
-    struct Piece {
-        reflection::ReflectorPiece piece;
-        std::vector<Object> objects;
-        gl::Buffer vertices, indices;
-        gl::VertexArray array;
-        std::optional<reflection::ChromeSearchMesh> onGpu;  ///< all objects, where the GPU searches
-    };
-    struct Chrome {
-        std::vector<bool> close;
-        std::vector<Piece> pieces;
-    };
-
-    const MirrorWorld& world;
-    reflection::VirtualMeshOptions options;
-    std::vector<Chrome> chrome;
-    std::vector<Welded> objects;  ///< the world's
-    std::optional<gl::ChromeLayer> layer;
-    gl::Program virtualObjects, apply;
-    bool searchOnGpu = false;
-    std::optional<reflection::ChromeSearch> search;
-    gl::Program searched;  ///< draws what the GPU has searched for
-
-    void makeGlObjects() {
-        if (layer) return;
-        layer.emplace();
-        virtualObjects = gl::Program::fromFiles({"chrome.vert", "chrome.frag"});
-        if (searchOnGpu) {
-            search.emplace();
-            searched = gl::Program::fromFiles({"chrome.vert", "chrome.frag"}, {"WITH_STATUS"});
-        }
-        apply = gl::Program::fromFiles({"mirror_world.vert", "chrome_apply.frag"});
-        for (Chrome& c : chrome)
-            for (Piece& p : c.pieces) {
-                p.vertices = gl::Buffer::filled(std::span<const city::Vertex>(p.piece.mesh.vertices));
-                p.indices = gl::Buffer::filled(std::span<const std::uint32_t>(p.piece.mesh.indices));
-                p.array = gl::VertexArray::create();
-                p.array.buffer(0, p.vertices.name(), sizeof(city::Vertex))
-                    .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
-                    .indices(p.indices.name());
-                for (Object& o : p.objects) o.drawn.emplace(std::vector<int>{3});
-                // On concave pieces images tear, which the processor's meshes find and leave out.
-                if (!searchOnGpu || p.piece.bend == reflection::Bend::concave) continue;
-                p.onGpu.emplace(p.piece.built.map, 3);
-                for (const Object& o : p.objects) {
-                    const Welded& object = objects[o.index];
-                    p.onGpu->add(object.positions, object.indices, object.colours);
-                }
-            }
+void MirrorWorldChrome::Impl::makeGlObjects() {
+    if (layer) return;
+    layer.emplace();
+    virtualObjects = gl::Program::fromFiles({"chrome.vert", "chrome.frag"});
+    if (searchOnGpu) {
+        search.emplace();
+        searched = gl::Program::fromFiles({"chrome.vert", "chrome.frag"}, {"WITH_STATUS"});
     }
-};
+    if (bounces.depth > 1) {
+        linear = gl::Sampler::create(GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE);
+        virtualBodies = gl::Program::fromFiles({"chrome_body.vert", "chrome_body.frag"});
+    }
+    apply = gl::Program::fromFiles({"mirror_world.vert", "chrome_apply.frag"});
+    for (Chrome& c : chrome)
+        for (Piece& p : c.pieces) {
+            p.vertices = gl::Buffer::filled(std::span<const city::Vertex>(p.piece->mesh.vertices));
+            p.indices = gl::Buffer::filled(std::span<const std::uint32_t>(p.piece->mesh.indices));
+            p.array = gl::VertexArray::create();
+            p.array.buffer(0, p.vertices.name(), sizeof(city::Vertex))
+                .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
+                .indices(p.indices.name());
+            for (Object& o : p.objects) o.drawn.emplace(std::vector<int>{3});
+            for (Body& b : p.bodies) b.drawn.emplace(std::vector<int>{3, 3, 3, 3});
+            // On concave pieces images tear, which the processor's meshes find and leave out.
+            if (!searchOnGpu || p.piece->bend == reflection::Bend::concave || p.piece->built.map.empty())
+                continue;
+            p.onGpu.emplace(p.piece->built.map, 3);
+            for (const Object& o : p.objects) {
+                const WeldedMesh& object = objects[o.index];
+                p.onGpu->add(object.positions, object.indices, object.values);
+            }
+        }
+}
 
-MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& options,
-                                     bool concave)
-    : impl_(new Impl{world, options, {}, {}, {}, {}, {}, false, {}, {}}) {
-    std::vector<Welded>& objects = impl_->objects;
+MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection::VirtualMeshOptions& given,
+                                     bool concave, const reflection::ChromeTreeOptions& bounces)
+    : impl_(std::make_unique<Impl>(world)) {
+    reflection::VirtualMeshOptions options = given;
+    // Pictures are many, and each vertex behind an open part's rim would be looked for everywhere.
+    if (bounces.depth > 1) options.vertices.search.thorough = false;
+    impl_->options = options;
+    impl_->bounces = bounces;
+    impl_->bounces.search.thorough = false;
+    std::vector<WeldedMesh>& objects = impl_->objects;
     for (const LitMesh& m : world.objects) objects.push_back(weld(m));
     for (const MirrorWorld::Curved& curved : world.curved) {
         Impl::Chrome& chrome = impl_->chrome.emplace_back();
         chrome.close.assign(world.objects.size(), false);
+        chrome.closeCurved.assign(world.curved.size(), false);
         if (curved.reflector.surface.roughness > 0) continue;
+        chrome.reach = (closeRadii + 1) * curved.reflector.radius;
         for (std::size_t o = 0; o < world.objects.size(); ++o)
-            chrome.close[o] = distanceTo(world.objects[o].bounds(), curved.reflector.centre) <
-                              (closeRadii + 1) * curved.reflector.radius;
+            chrome.close[o] = distanceTo(world.objects[o].bounds(), curved.reflector.centre) < chrome.reach;
         // Drawn is what has been drawn before, depth by depth: the finer surface only where it is one piece.
         reflection::Reflector reflector = reflection::makeReflector(withoutLight(curved.finest()));
         if (reflector.pieces.size() == 1)
             reflector.pieces.front().mesh = withoutLight(curved.mesh);
         else
             reflector = reflection::makeReflector(withoutLight(curved.mesh));
+        // Others see its concave pieces too.
         for (reflection::ReflectorPiece& piece : reflector.pieces) {
-            if (piece.built.map.empty()) continue;
-            if (!concave && piece.bend == reflection::Bend::concave) continue;
+            if (!concave && piece.bend == reflection::Bend::concave) piece.built.map = {};
+            if (bounces.depth > 1) chrome.points.push_back(reflection::spreadPoints(piece.mesh, bodyPoints));
+        }
+        const bool any = std::ranges::any_of(reflector.pieces, [](const reflection::ReflectorPiece& piece) {
+            return !piece.built.map.empty();
+        });
+        chrome.reflector = std::make_unique<reflection::Reflector>(std::move(reflector));
+        for (const reflection::ReflectorPiece& piece : chrome.reflector->pieces) {
             Impl::Piece& made = chrome.pieces.emplace_back();
-            made.piece = std::move(piece);
+            made.piece = &piece;
+            if (piece.built.map.empty()) continue;
             for (std::size_t o = 0; o < world.objects.size(); ++o) {
                 if (!chrome.close[o]) continue;
                 made.objects.push_back(
                     {o, reflection::VirtualMesh(objects[o].positions, objects[o].indices, options), {}});
             }
         }
-        if (chrome.pieces.empty()) chrome.close.assign(world.objects.size(), false);
+        if (!any) chrome.close.assign(world.objects.size(), false);
     }
+    if (bounces.depth <= 1) return;
+    for (std::size_t a = 0; a < impl_->chrome.size(); ++a)
+        for (std::size_t b = 0; b < impl_->chrome.size(); ++b) {
+            Impl::Chrome& in = impl_->chrome[a];
+            const reflection::CurvedReflector& of = world.curved[b].reflector;
+            if (a == b || in.pieces.empty() || impl_->chrome[b].pieces.empty() ||
+                !(glm::distance(world.curved[a].reflector.centre, of.centre) - of.radius < in.reach))
+                continue;
+            in.closeCurved[b] = true;
+            for (Impl::Piece& piece : in.pieces)
+                for (std::size_t k = 0; k < impl_->chrome[b].pieces.size() && !piece.piece->built.map.empty();
+                     ++k) {
+                    const city::Mesh& mesh = impl_->chrome[b].pieces[k].piece->mesh;
+                    std::vector<glm::vec3> positions;
+                    for (const city::Vertex& v : mesh.vertices) positions.push_back(v.position);
+                    piece.bodies.push_back(
+                        {b, k, reflection::VirtualMesh(std::move(positions), mesh.indices, options), {}});
+                }
+        }
 }
 MirrorWorldChrome::~MirrorWorldChrome() = default;
 
@@ -189,84 +166,125 @@ const std::vector<bool>& MirrorWorldChrome::closeTo(std::size_t curved) const {
     return impl_->chrome[curved].close;
 }
 
+const std::vector<bool>& MirrorWorldChrome::chromeCloseTo(std::size_t curved) const {
+    return impl_->chrome[curved].closeCurved;
+}
+
+const reflection::ChromeTree& MirrorWorldChrome::tree() const {
+    return impl_->tree;
+}
+
+reflection::VirtualMeshOptions MirrorWorldChrome::Impl::optionsFor(const Image& image,
+                                                                   std::size_t curved) const {
+    const reflection::CurvedReflector& reflector = world.curved[curved].reflector;
+    reflection::VirtualMeshOptions how = options;
+    const glm::dvec3 towards = reflector.centre - image.view.eye;
+    const double distance = glm::length(towards);
+    if (distance > 1.1 * reflector.radius) {
+        const double sine = reflector.radius / distance;
+        how.towards = towards / distance;
+        how.coneCosine = std::sqrt(1 - sine * sine);
+    }
+    if (image.node != reflection::ChromeNode::none) {
+        // A picture's texels are as many as the pixels it covers: as fine as those.
+        how.tolerance = 1 / (image.view.clipFromView[1][1] * image.size.y);
+        how.vertices.cellTolerance = 0.5 * how.tolerance;
+    }
+    return how;
+}
+
+/// The virtual objects of a piece, in a layer: what the piece shows where it is seen.
+void MirrorWorldChrome::Impl::drawPiece(const Image& image, std::size_t curved, std::size_t piece,
+                                        const reflection::PixelRect& pixels, gl::ChromeLayer& into,
+                                        const ChromeEnvironments& environments, ChromeFrame& frame) {
+    Piece& p = chrome[curved].pieces[piece];
+    const reflection::VirtualMeshOptions how = optionsFor(image, curved);
+    const glm::mat4 clip(image.view.clipFromView * glm::dmat4(image.view.viewFromWorld));
+    const auto start = std::chrono::steady_clock::now();
+    if (p.onGpu) {
+        p.onGpu->update(*search, image.view.eye);
+        frame.meshes += p.objects.size();
+        frame.vertices += p.onGpu->vertexCount();
+        frame.searched += p.onGpu->vertexCount();
+        frame.triangles += p.onGpu->triangleCount();
+    }
+    for (Object& o : p.objects)
+        if (!p.onGpu)
+            add(o.mesh.update(p.piece->built.map, image.view.eye, glm::dmat4(1), how), o.mesh, frame);
+    frame.searchMilliseconds += millisecondsSince(start);
+    into.begin(image.size, pixels);
+    // Mirrored once: what is seen of an object's front has turned round.
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_CLIP_DISTANCE0);
+    glDisable(GL_CLIP_DISTANCE1);
+    const gl::Program& program = p.onGpu ? searched : virtualObjects;
+    program.set("clipFromVirtual", clip);
+    program.use();
+    if (p.onGpu) p.onGpu->draw();
+    for (Object& o : p.objects) {
+        if (p.onGpu) break;
+        o.drawn->upload(o.mesh, objects[o.index].values);
+        o.drawn->draw();
+    }
+    if (!tree.nodes.empty()) drawBodies(image, curved, piece, how, clip, environments, frame);
+}
+
+void MirrorWorldChrome::Impl::drawPieces(const Image& image, std::size_t curved,
+                                         const reflection::PixelRect& pixels,
+                                         const ChromeEnvironments& environments, ChromeFrame& frame) {
+    const reflection::CurvedReflector& reflector = world.curved[curved].reflector;
+    const glm::mat4 clip(image.view.clipFromView * glm::dmat4(image.view.viewFromWorld));
+    for (std::size_t k = 0; k < chrome[curved].pieces.size(); ++k) {
+        Piece& p = chrome[curved].pieces[k];
+        if (p.piece->built.map.empty() || !faces(p.piece->mesh, glm::vec3(image.view.eye))) continue;
+        ++frame.jobs;
+        drawPiece(image, curved, k, pixels, *layer, environments, frame);
+        glBindFramebuffer(GL_FRAMEBUFFER, image.framebuffer);
+        glDepthMask(GL_FALSE);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        glEnable(GL_CULL_FACE);
+        glCullFace(GL_BACK);
+        apply.set("eye", glm::vec3(image.view.eye));
+        apply.set("clipFromRelative", clip);
+        apply.set("glass", glm::vec4(0, 0, 0, 1));
+        apply.set("reflectance", reflector.surface.reflectance);
+        apply.set("tint", world.curved[curved].tint);
+        apply.use();
+        glBindTextureUnit(11, layer->colour());
+        p.array.bind();
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(p.piece->mesh.indices.size()), GL_UNSIGNED_INT,
+                       nullptr);
+        glDisable(GL_BLEND);
+        glDepthMask(GL_TRUE);
+    }
+}
+
 ChromeFrame MirrorWorldChrome::draw(const reflection::EyeView& view, const glm::ivec2& size,
-                                    std::uint32_t framebuffer) {
+                                    std::uint32_t framebuffer, const ChromeEnvironments& environments) {
     Impl& my = *impl_;
     my.makeGlObjects();
     ChromeFrame frame;
-    const glm::mat4 clip(view.clipFromView * glm::dmat4(view.viewFromWorld));
+    const auto planning = std::chrono::steady_clock::now();
+    my.plan(view, size);
+    frame.planMilliseconds = millisecondsSince(planning);
+    if (my.pictures.size() < my.tree.nodes.size()) my.pictures.resize(my.tree.nodes.size());
     glFrontFace(view.mirrored() ? GL_CW : GL_CCW);
+    for (std::size_t n = my.tree.nodes.size(); n-- > 0;)
+        if (my.tree.nodes[n].look == reflection::ChromeLook::picture)
+            my.makePicture(static_cast<std::uint32_t>(n), environments, frame);
     for (std::size_t c = 0; c < my.chrome.size(); ++c) {
         const reflection::CurvedReflector& reflector = my.world.curved[c].reflector;
         const reflection::PixelRect pixels = pixelsOf(view, size, reflector.centre, reflector.radius);
-        const bool nothingClose = std::none_of(my.chrome[c].close.begin(), my.chrome[c].close.end(),
-                                               [](bool close) { return close; });
+        const bool nothingClose =
+            std::none_of(my.chrome[c].close.begin(), my.chrome[c].close.end(),
+                         [](bool close) { return close; }) &&
+            std::none_of(my.chrome[c].closeCurved.begin(), my.chrome[c].closeCurved.end(),
+                         [](bool close) { return close; });
         if (my.chrome[c].pieces.empty() || nothingClose || pixels.size().x <= 0 || pixels.size().y <= 0)
             continue;
-        reflection::VirtualMeshOptions options = my.options;
-        const glm::dvec3 towards = reflector.centre - view.eye;
-        const double distance = glm::length(towards);
-        if (distance > 1.1 * reflector.radius) {
-            const double sine = reflector.radius / distance;
-            options.towards = towards / distance;
-            options.coneCosine = std::sqrt(1 - sine * sine);
-        }
-        for (Impl::Piece& p : my.chrome[c].pieces) {
-            if (!faces(p.piece.mesh, glm::vec3(view.eye))) continue;
-            ++frame.jobs;
-            const auto start = std::chrono::steady_clock::now();
-            if (p.onGpu) {
-                p.onGpu->update(*my.search, view.eye);
-                frame.meshes += p.objects.size();
-                frame.vertices += p.onGpu->vertexCount();
-                frame.searched += p.onGpu->vertexCount();
-                frame.triangles += p.onGpu->triangleCount();
-            }
-            for (Impl::Object& o : p.objects) {
-                if (p.onGpu) break;
-                const reflection::VirtualCounts counts =
-                    o.mesh.update(p.piece.built.map, view.eye, glm::dmat4(1), options);
-                ++frame.meshes;
-                frame.vertices += o.mesh.vertices().size();
-                frame.searched += counts.searched;
-                frame.lookups += counts.lookups;
-                frame.triangles += o.mesh.indices().size() / 3;
-            }
-            frame.searchMilliseconds +=
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-            my.layer->begin(size, pixels);
-            // Mirrored once: what is seen of an object's front has turned round.
-            glDisable(GL_CULL_FACE);
-            glDisable(GL_CLIP_DISTANCE0);
-            glDisable(GL_CLIP_DISTANCE1);
-            const gl::Program& program = p.onGpu ? my.searched : my.virtualObjects;
-            program.set("clipFromVirtual", clip);
-            program.use();
-            if (p.onGpu) p.onGpu->draw();
-            for (Impl::Object& o : p.objects) {
-                if (p.onGpu) break;
-                o.drawn->upload(o.mesh, my.objects[o.index].colours);
-                o.drawn->draw();
-            }
-            glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-            glDepthMask(GL_FALSE);
-            glEnable(GL_BLEND);
-            glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-            glEnable(GL_CULL_FACE);
-            glCullFace(GL_BACK);
-            my.apply.set("eye", glm::vec3(view.eye));
-            my.apply.set("clipFromRelative", clip);
-            my.apply.set("glass", glm::vec4(0, 0, 0, 1));
-            my.apply.set("reflectance", reflector.surface.reflectance);
-            my.apply.set("tint", my.world.curved[c].tint);
-            my.apply.use();
-            glBindTextureUnit(11, my.layer->colour());
-            p.array.bind();
-            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(p.piece.mesh.indices.size()), GL_UNSIGNED_INT,
-                           nullptr);
-            glDisable(GL_BLEND);
-            glDepthMask(GL_TRUE);
-        }
+        my.drawPieces({view, size, framebuffer, reflection::ChromeNode::none}, c, pixels, environments,
+                      frame);
     }
     glDisable(GL_SCISSOR_TEST);
     return frame;

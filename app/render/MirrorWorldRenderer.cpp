@@ -84,6 +84,11 @@ struct MirrorWorldRenderer::Impl {
         return held;
     }
 
+    bool leftOutOfFace(std::uint32_t ofMap, std::uint32_t c) const {
+        return face && ofMap < curvedLeftOut.size() && !curvedLeftOut[ofMap].empty() &&
+               curvedLeftOut[ofMap][c];
+    }
+
     const MirrorWorldGeometry& geometry(const EyeView& view) const {
         return view.projection == Projection::paraboloid && fine ? *fine : plain;
     }
@@ -189,7 +194,7 @@ struct MirrorWorldRenderer::Impl {
         std::vector<std::uint32_t> shown;
         for (std::uint32_t c = 0; c < g.curved.size(); ++c) {
             const reflection::CurvedReflector& r = world.curved[c].reflector;
-            if (c == hidden || curvedApplied[c] ||
+            if (c == hidden || curvedApplied[c] || leftOutOfFace(hidden, c) ||
                 !reflection::touches(frustum, r.centre - view.eye, r.radius))
                 continue;
             if (environment[c] != 0)
@@ -257,7 +262,7 @@ struct MirrorWorldRenderer::Impl {
     gl::VertexArray nothing = gl::VertexArray::create();
     std::vector<std::uint32_t> environment;
     std::vector<bool> flatApplied, curvedApplied;
-    std::vector<std::vector<bool>> leftOut;
+    std::vector<std::vector<bool>> leftOut, curvedLeftOut;
     std::vector<std::uint32_t> held;
     MirrorDrawList list;
     bool clusters = true;
@@ -277,9 +282,16 @@ void MirrorWorldRenderer::setClusters(bool clusters) {
     impl_->clusters = clusters;
 }
 
-void MirrorWorldRenderer::setLeftOut(std::size_t curved, std::vector<bool> objects) {
+void MirrorWorldRenderer::setLeftOut(std::size_t curved, std::vector<bool> objects,
+                                     std::vector<bool> others) {
     impl_->leftOut.resize(impl_->world.curved.size());
     impl_->leftOut[curved] = std::move(objects);
+    impl_->curvedLeftOut.resize(impl_->world.curved.size());
+    impl_->curvedLeftOut[curved] = std::move(others);
+}
+
+std::span<const std::uint32_t> MirrorWorldRenderer::environments() const {
+    return impl_->environment;
 }
 
 void MirrorWorldRenderer::setOblique(bool oblique) {

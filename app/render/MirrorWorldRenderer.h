@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "app/mirrors/MirrorWorld.h"
@@ -44,9 +45,11 @@ class MirrorWorldRenderer final : public reflection::MirrorScene {
     /// (Economies::offScreen); true from the beginning.
     void setClusters(bool clusters);
 
-    /// Objects that the environment map of a curved reflector does not hold, because it shows them otherwise:
-    /// one flag for each object. Empty: it holds all.
-    void setLeftOut(std::size_t curved, std::vector<bool> objects);
+    /// Objects that the environment map of a curved reflector does not hold, because it shows them otherwise,
+    /// and other curved reflectors: one flag for each. Empty: it holds all.
+    void setLeftOut(std::size_t curved, std::vector<bool> objects, std::vector<bool> others = {});
+    /// GL names of the curved reflectors' view-independent maps; 0: none yet.
+    std::span<const std::uint32_t> environments() const;
 
     /// Mirrors by oblique near planes in place of clip distances.
     void setOblique(bool oblique);

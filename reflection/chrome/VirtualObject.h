@@ -19,6 +19,10 @@ struct VirtualVertex {
     ReflectionStatus status = ReflectionStatus::invalid;
 };
 
+/// Where on the piece a virtual vertex is seen, from what it is drawn with: on its line of sight, where the
+/// rest of its path reaches the vertex. Frame: the reflector's. The eye, where there is no such place.
+glm::dvec3 reflectionPointOf(const VirtualVertex& seen, const glm::dvec3& eye, const glm::dvec3& vertex);
+
 struct VirtualOptions {
     /// Share of the mesh's vertices that may be searched for; 1: all, without a grid.
     double share = 0.096;

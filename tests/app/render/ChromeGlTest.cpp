@@ -117,5 +117,41 @@ TEST_F(ChromeGlTest, TheGraphicsCardsSearchDrawsTheSamePicture) {
     EXPECT_GT(apart, 28);
 }
 
+TEST_F(ChromeGlTest, ChromeInChromeShowsWhatRaysOfManyBouncesMeet) {
+    MirrorWorld world = ballAmongThings();
+    world.curved[0].reflector.centre.x = -.5;
+    MirrorWorld::Curved second = world.curved[0];
+    second.reflector.centre = {.5, .1, .42};
+    for (MirrorWorld::Curved* ball : {&world.curved[0], &second})
+        ball->mesh = litBall(glm::vec3(ball->reflector.centre), .4f, 96, 72, glm::vec3(1));
+    world.curved.push_back(second);
+    const TracedPicture truth = MirrorTruth(world).picture(world.view(size), {.depth = 6, .samples = 1});
+    std::vector<std::uint8_t> inside;
+    for (std::size_t k = 0; k < truth.level.size(); ++k)
+        inside.push_back(truth.curved[k] != 0 && truth.level[k] >= 2);
+    reflection::VirtualMeshOptions options;
+    options.vertices.share = 1;
+    std::vector<double> flip;
+    for (int depth = 1; depth <= 3; ++depth) {
+        reflection::MirrorPassOptions pass;
+        pass.nearness = true;
+        MirrorStage stage(world, size, CurvedMaps::cube, pass);
+        stage.setChrome(options, true, {.depth = depth});
+        TreeSettings settings;
+        settings.depth = 6;
+        for (int k = 0; k < 4; ++k) stage.draw(settings);
+        // Each shows the other, and itself in it, and so on.
+        EXPECT_EQ(stage.chromeTree().passes(), 2u * static_cast<std::uint32_t>(depth - 1));
+        EXPECT_EQ(stage.chromeFrame().pictures, stage.chromeTree().passes());
+        const std::vector<glm::vec3> image = stage.read();
+        flip.push_back(reflection::meanError(
+            reflection::flip({size.x, size.y, image}, {size.x, size.y, truth.radiance}), inside));
+        writeRadiance("chrome_bounces_" + std::to_string(depth), image);
+    }
+    writeRadiance("chrome_bounces_truth", truth.radiance);
+    EXPECT_LT(flip[1], 0.5 * flip[0]);
+    EXPECT_LT(flip[2], flip[1]);
+}
+
 }  // namespace
 }  // namespace app
