@@ -70,6 +70,7 @@ MirrorRows chromeBounces(const MirrorWorld& world, const ChromeBenchOptions& opt
         reflection::VirtualMeshOptions mesh;
         mesh.vertices = options.vertex;
         mesh.vertices.share = 1;
+        mesh.vertices.search.thorough = false;
         reflection::ChromeTreeOptions bounces;
         bounces.depth = depth;
         stages.back()->setChrome(mesh, false, bounces);
