@@ -127,8 +127,10 @@ std::optional<CachedReflections> cachedReflections(const city::CityModel& city, 
 PreparedReflections prepareReflections(const city::CityModel& city, const Lighting& lighting,
                                        reflection::SceneDrawer& drawer, const PreparationOptions& options) {
     PreparedReflections prepared;
-    prepared.field = std::make_unique<city::Heightfield>(city::cityHeightfield(city, options.cell));
-    prepared.tracer = std::make_unique<reflection::GridTracer>(*prepared.field);
+    {
+        const city::CityColumns columns = city::cityColumns(city, options.cell);
+        prepared.tracer = std::make_unique<reflection::GridTracer>(columns.solid, columns.hanging);
+    }
     if (!options.maps) return prepared;
 
     const reflection::ReferenceMapStore store = storeOf(city, lighting, options);
@@ -146,8 +148,11 @@ PreparedReflections prepareReflections(const city::CityModel& city, const Lighti
     if (!plan) {
         prepared.complete = goOn(0, 0);
         if (!prepared.complete) return prepared;
+        // Crowns as columns here: a map that looks along under them would be taken for one that sees what is
+        // behind.
+        const reflection::GridTracer columns(city::cityHeightfield(city, options.cell));
         const reflection::Placement placed =
-            reflection::placeReferenceMaps(*prepared.tracer, drivingPositions(city, 2), options.placement);
+            reflection::placeReferenceMaps(columns, drivingPositions(city, 2), options.placement);
         plan.emplace();
         plan->positions.assign(placed.positions.begin(), placed.positions.end());
         // What stands mirrors the same surroundings for ever: a map from its own place has them at hand.

@@ -9,7 +9,6 @@
 
 #include "app/frame/Lighting.h"
 #include "city/model/CityModel.h"
-#include "city/terrain/Heightfield.h"
 #include "reflection/gl/SceneDrawer.h"
 #include "reflection/reference_maps/PackedReferenceMap.h"
 #include "reflection/reference_maps/Placement.h"
@@ -27,7 +26,7 @@ struct PreparationOptions {
     int supersampling = 2;
     reflection::PlacementOptions placement;
     bool useCache = true;
-    bool maps = true;  ///< false: heightfield and tracer alone
+    bool maps = true;  ///< false: the tracer alone
     /// A cache that cannot be written is an error; otherwise it is said, and the maps are drawn for this run.
     bool cacheIsPurpose = false;
     std::filesystem::path cache;  ///< empty: the user's cache folder
@@ -37,7 +36,6 @@ struct PreparationOptions {
 
 /// What the reflections of a city need before its first frame: heightfield, tracer, reference maps.
 struct PreparedReflections {
-    std::unique_ptr<city::Heightfield> field;
     std::unique_ptr<reflection::GridTracer> tracer;
     std::vector<reflection::PackedReferenceMap> maps;
     double coverage = 0;  ///< share of the surface visible from driving positions that some map sees

@@ -1,11 +1,13 @@
 #include "city/model/CityHeightfield.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "city/model/LaneClearance.h"
 #include "city/terrain/Rasterise.h"
@@ -23,6 +25,9 @@ constexpr double mostCells = 268435456.0;
 /// Helsinki 0.118, 0.085 0.084 0.084 0.075 0.082; boulevard 0.089, 0.089 0.075 0.075 0.093 0.094 (there the
 /// trees themselves stand 3 m from lanes).
 constexpr float crownClearance = 2;
+
+constexpr float leastAir = 1.5f;   ///< metres under a crown that hangs: a car has room beneath
+constexpr float lanesFree = 3.0f;  ///< metres under crowns over lanes
 
 Aabb transformed(const Aabb& box, const glm::mat4& m) {
     Aabb out;
@@ -128,22 +133,31 @@ const Mesh* levelFor(const Prototype& prototype, float scale, float cellSize) {
     return chosen;
 }
 
-}  // namespace
+Heightfield emptyLike(const Heightfield& field) {
+    return Heightfield(field.width(), field.height(), field.cellSize(), field.origin());
+}
 
-Heightfield cityHeightfield(const CityModel& city, float cellSize) {
-    Heightfield field = fieldOver(built(city), cellSize);
-    Heightfield buildings = field;
-    Heightfield touched = field;
+/// The city before its parts are put together.
+struct Layers {
+    Heightfield ground, buildings, touched;
+    Heightfield crowns;        ///< tops, gaps between leaves filled
+    Heightfield lowestLeaves;  ///< their lowest points, upside down: -z
+};
+
+Layers layersOf(const CityModel& city, float cellSize) {
+    const Heightfield empty = fieldOver(built(city), cellSize);
+    Layers layers{empty, empty, empty, empty, empty};
     const glm::mat4 identity(1);
     for (const Chunk& chunk : city.chunks) {
         if (chunk.kind == ChunkKind::building) {
-            rasterise(chunk.mesh, identity, Coverage::centre, buildings);
-            rasterise(chunk.mesh, identity, Coverage::any, touched);
+            rasterise(chunk.mesh, identity, Coverage::centre, layers.buildings);
+            rasterise(chunk.mesh, identity, Coverage::any, layers.touched);
         } else if (chunk.kind == ChunkKind::ground) {
-            rasterise(chunk.mesh, identity, Coverage::centre, field);
+            rasterise(chunk.mesh, identity, Coverage::centre, layers.ground);
         }
     }
-    Heightfield trees(field.width(), field.height(), cellSize, field.origin());
+    glm::mat4 upsideDown(1);
+    upsideDown[2][2] = -1;
     for (const Placement& placement : city.placements) {
         if (placement.prototype >= city.prototypes.size()) continue;
         const Prototype& prototype = city.prototypes[placement.prototype];
@@ -151,23 +165,79 @@ Heightfield cityHeightfield(const CityModel& city, float cellSize) {
         const glm::mat4& m = placement.worldFromPrototype;
         const float scale = std::max(
             {glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
-        if (const Mesh* mesh = levelFor(prototype, scale, cellSize))
-            rasterise(*mesh, m, Coverage::centre, trees);
+        if (const Mesh* mesh = levelFor(prototype, scale, cellSize)) {
+            rasterise(*mesh, m, Coverage::centre, layers.crowns);
+            rasterise(*mesh, upsideDown * m, Coverage::centre, layers.lowestLeaves);
+        }
     }
-    clearLanes(city.roads, 0, buildings);
-    clearLanes(city.roads, 0, touched);
+    clearLanes(city.roads, 0, layers.buildings);
+    clearLanes(city.roads, 0, layers.touched);
     // Closing: gaps between leaves fill up, the crown's outline stays.
     if (!city.placements.empty()) {
         const Heightfield grown =
-            overNeighbours(trees, nothing, [](float a, float b) { return std::max(a, b); });
-        Heightfield closed = overNeighbours(grown, std::numeric_limits<float>::infinity(),
-                                            [](float a, float b) { return std::min(a, b); });
-        clearLanes(city.roads, crownClearance, closed);
-        raiseTo(field, closed);
+            overNeighbours(layers.crowns, nothing, [](float a, float b) { return std::max(a, b); });
+        layers.crowns = overNeighbours(grown, std::numeric_limits<float>::infinity(),
+                                       [](float a, float b) { return std::min(a, b); });
     }
-    raiseTo(field, buildings);
-    keepThinWalls(buildings, touched, field);
-    return field;
+    return layers;
+}
+
+void addBuildings(Layers& layers) {
+    raiseTo(layers.ground, layers.buildings);
+    keepThinWalls(layers.buildings, layers.touched, layers.ground);
+}
+
+/// Heights of the lowest leaves, each the median of those in the 3 x 3 cells around: a trunk, or one leaf
+/// that droops, does not count.
+Heightfield undersidesOf(const Heightfield& upsideDown) {
+    Heightfield result = emptyLike(upsideDown);
+    std::array<float, 9> around;
+    for (int j = 0; j < upsideDown.height(); ++j)
+        for (int i = 0; i < upsideDown.width(); ++i) {
+            std::size_t n = 0;
+            for (int v = std::max(0, j - 1); v <= std::min(upsideDown.height() - 1, j + 1); ++v)
+                for (int u = std::max(0, i - 1); u <= std::min(upsideDown.width() - 1, i + 1); ++u)
+                    if (const float z = upsideDown.at(u, v); std::isfinite(z)) around[n++] = -z;
+            if (n == 0) continue;
+            const auto middle = around.begin() + static_cast<std::ptrdiff_t>(n / 2);
+            std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(n));
+            result.set(i, j, *middle);
+        }
+    return result;
+}
+
+}  // namespace
+
+Heightfield cityHeightfield(const CityModel& city, float cellSize) {
+    Layers layers = layersOf(city, cellSize);
+    clearLanes(city.roads, crownClearance, layers.crowns);
+    raiseTo(layers.ground, layers.crowns);
+    addBuildings(layers);
+    return std::move(layers.ground);
+}
+
+CityColumns cityColumns(const CityModel& city, float cellSize) {
+    Layers layers = layersOf(city, cellSize);
+    const Heightfield undersides = undersidesOf(layers.lowestLeaves);
+    Heightfield kept = layers.crowns;  // without the lanes' share: what stands there is no bush
+    clearLanes(city.roads, crownClearance, kept);
+    Overhang hanging{emptyLike(layers.ground), emptyLike(layers.ground)};
+    for (int j = 0; j < kept.height(); ++j)
+        for (int i = 0; i < kept.width(); ++i) {
+            const float top = layers.crowns.at(i, j), ground = layers.ground.at(i, j);
+            if (!std::isfinite(top)) continue;
+            const bool overLane = kept.at(i, j) == nothing;
+            float underside = undersides.at(i, j);
+            if (overLane && std::isfinite(ground)) underside = std::max(underside, ground + lanesFree);
+            if (std::isfinite(underside) && !(underside - ground < leastAir)) {
+                hanging.underside.set(i, j, underside);
+                hanging.top.set(i, j, top);
+                kept.set(i, j, nothing);
+            }
+        }
+    raiseTo(layers.ground, kept);
+    addBuildings(layers);
+    return {std::move(layers.ground), std::move(hanging)};
 }
 
 Heightfield occluderHeightfield(const CityModel& city, float cellSize) {

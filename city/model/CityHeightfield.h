@@ -2,6 +2,7 @@
 
 #include "city/model/CityModel.h"
 #include "city/terrain/Heightfield.h"
+#include "city/terrain/Overhang.h"
 
 namespace city {
 
@@ -16,6 +17,19 @@ namespace city {
 /// nothing in it gives one empty cell. Throws std::invalid_argument for a cell that is not finite and
 /// positive or so small that the field would pass 2^28 cells. Cost: linear in triangles and cells.
 Heightfield cityHeightfield(const CityModel& city, float cellSize = 1);
+
+/// The same city for rays that start in the street, where a crown is no column but hangs: who stands or
+/// parks under a tree is under its crown, not inside it, and sees out below it.
+struct CityColumns {
+    Heightfield solid;  ///< as cityHeightfield's without what hangs
+    /// Crowns whose leaves begin at least 1.5 m above the ground (lower ones, bushes, are solid columns). A
+    /// cell's underside is the median of those around it, so that a trunk does not reach down from it; over
+    /// lanes no lower than 3 m, as trees by the road are cut. Tops are cityHeightfield's.
+    Overhang hanging;
+};
+
+/// As cityHeightfield, in cells, extent, exceptions and cost.
+CityColumns cityColumns(const CityModel& city, float cellSize = 1);
 
 /// Buildings alone, each cell no higher than what stands over the whole of it: what hides behind it is hidden
 /// for sure.

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "reflection/tracing/HangingTracer.h"
 #include "reflection/tracing/LeapWalk.h"
 #include "reflection/tracing/TracedGrid.h"
 
@@ -76,10 +77,20 @@ GridTracer::GridTracer(const city::Heightfield& field) {
     grid_ = std::move(grid);
 }
 
+GridTracer::GridTracer(const city::Heightfield& field, const city::Overhang& hanging) : GridTracer(field) {
+    for (int j = 0; j < hanging.top.height() && !hanging_; ++j)
+        for (int i = 0; i < hanging.top.width() && !hanging_; ++i)
+            if (hanging.hangs(i, j)) hanging_ = std::make_shared<HangingTracer>(hanging);
+}
+
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
-    return leapWalk(*grid_, ray,
-                    tMax > std::numeric_limits<float>::max() ? std::numeric_limits<float>::max() : tMax);
+    const float most = tMax > std::numeric_limits<float>::max() ? std::numeric_limits<float>::max() : tMax;
+    const TraceResult solid = leapWalk(*grid_, ray, most);
+    if (!hanging_ || solid.status == TraceStatus::invalid) return solid;
+    const bool met = solid.status == TraceStatus::hit;
+    const TraceResult hung = hanging_->trace(ray, met ? solid.t : most);
+    return hung.status == TraceStatus::hit && (!met || hung.t < solid.t) ? hung : solid;
 }
 
 bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
@@ -95,6 +106,7 @@ void GridTracer::traceFan(glm::vec3 origin, std::span<const float> dx, std::span
                           std::span<const float> dz, std::span<float> t) const {
     const std::size_t count = std::min({dx.size(), dy.size(), dz.size(), t.size()});
     leapFan(*grid_, origin, dx.first(count), dy.first(count), dz.first(count), t.first(count));
+    if (hanging_) hanging_->lower(origin, dx.first(count), dy.first(count), dz.first(count), t.first(count));
 }
 
 }  // namespace reflection

@@ -10,10 +10,12 @@
 
 #include "city/geometry/Ray.h"
 #include "city/terrain/Heightfield.h"
+#include "city/terrain/Overhang.h"
 
 namespace reflection {
 
 struct TracedGrid;
+class HangingTracer;
 
 enum class TraceStatus : std::uint8_t {
     hit,      ///< t and cell are set
@@ -60,6 +62,10 @@ class GridTracer {
     /// nearer to 0 than 2^-500 m counts as 0.
     explicit GridTracer(const city::Heightfield& field);
 
+    /// And what hangs with air beneath it (of the same cells or of others): a ray hits whichever it enters
+    /// first. Rules and cost of that: HangingTracer.
+    GridTracer(const city::Heightfield& field, const city::Overhang& hanging);
+
     /// Entries with t > tMax count as misses.
     TraceResult trace(const city::Ray& ray, float tMax = std::numeric_limits<float>::max()) const;
 
@@ -77,6 +83,7 @@ class GridTracer {
 
   private:
     std::shared_ptr<const TracedGrid> grid_;
+    std::shared_ptr<const HangingTracer> hanging_;  ///< null where nothing hangs
 };
 
 }  // namespace reflection

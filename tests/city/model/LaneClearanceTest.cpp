@@ -114,3 +114,40 @@ TEST(LaneClearance, carsUnderCrownsAndInPassagesStandInTheOpen) {
     EXPECT_EQ(field.heightAt(20, 2.5), 0) << "over the parking strip";
     EXPECT_EQ(field.heightAt(20, 5.5), 9) << "the crown itself";
 }
+
+/// A crown hangs, wherever it is: over the pavement who stands there is under it, not inside a column. What
+/// has no air beneath stays a column.
+TEST(LaneClearance, crownsHangOverWhoeverStandsUnderThem) {
+    city::CityModel city;
+    city.chunks.push_back(chunk(city::ChunkKind::ground, slab(-40, 40, -40, 40, 0)));
+    city::Prototype tree;
+    city::Mesh crown = slab(-4, 4, -4, 4, 9);
+    const city::Mesh below = slab(-4, 4, -4, 4, 2.5f);
+    const auto first = static_cast<std::uint32_t>(crown.vertices.size());
+    crown.vertices.insert(crown.vertices.end(), below.vertices.begin(), below.vertices.end());
+    for (const std::uint32_t index : below.indices) crown.indices.push_back(first + index);
+    // A trunk whose foot lies under a cell's centre.
+    const city::Mesh foot = slab(0.4f, 0.6f, 0.4f, 0.6f, 0.1f);
+    const auto second = static_cast<std::uint32_t>(crown.vertices.size());
+    crown.vertices.insert(crown.vertices.end(), foot.vertices.begin(), foot.vertices.end());
+    for (const std::uint32_t index : foot.indices) crown.indices.push_back(second + index);
+    tree.levels.push_back({crown, 0});
+    city::Prototype bush;
+    bush.levels.push_back({slab(-2, 2, -2, 2, 1.2f), 0});
+    city.prototypes = {tree, bush};
+    glm::mat4 place(1);
+    place[3] = glm::vec4(20, 4, 0, 1);
+    city.placements.push_back({0, place});
+    place[3] = glm::vec4(-20, 10, 0, 1);
+    city.placements.push_back({1, place});
+    city.roads.lanes.push_back(lane({{-40, 0, 0}, {40, 0, 0}}));
+    const city::CityColumns columns = city::cityColumns(city, 1);
+    const city::Heightfield& solid = columns.solid;
+    EXPECT_EQ(solid.heightAt(20.5, 4.5), 0) << "under the crown, where its trunk stands";
+    EXPECT_EQ(columns.hanging.underside.heightAt(20.5, 4.5), 2.5f);
+    EXPECT_EQ(columns.hanging.top.heightAt(20.5, 4.5), 9);
+    EXPECT_EQ(columns.hanging.underside.heightAt(20.5, 0.5), 3) << "over the lane, cut to height";
+    EXPECT_EQ(columns.hanging.top.heightAt(30.5, 4.5), -std::numeric_limits<float>::infinity());
+    EXPECT_EQ(solid.heightAt(-20.5, 10.5), 1.2f) << "a bush";
+    EXPECT_EQ(columns.hanging.top.heightAt(-20.5, 10.5), -std::numeric_limits<float>::infinity());
+}
