@@ -1,30 +1,27 @@
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "app/commands/Benches.h"
 #include "app/commands/CarsStage.h"
-#include "app/commands/MirrorMask.h"
+#include "app/commands/CloseViews.h"
 #include "app/commands/PreparedScene.h"
-#include "app/commands/ReflectionSource.h"
 #include "app/commands/SquareChrome.h"
 #include "app/commands/SquareShots.h"
 #include "app/commands/StoneBench.h"
 #include "app/commands/Version.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/AssembleFrame.h"
-#include "app/frame/ChromePlan.h"
-#include "app/frame/CloseScene.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/frame/StandingReflectors.h"
 #include "app/report/AsideFile.h"
-#include "app/report/Picture.h"
 #include "app/report/Progress.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
 #include "app/report/Timing.h"
-#include "reflection/truth/ImageError.h"
 
 namespace app {
 
@@ -35,115 +32,42 @@ constexpr std::uint32_t framesBefore = 20, framesMeasured = 80;
 
 using Table = std::vector<std::vector<std::string>>;
 
-std::string fileName(std::string shot, const std::string& method) {
-    std::ranges::replace(shot, ' ', '_');
-    return "square_" + shot + "_" + method + ".png";
+constexpr std::array<std::string_view, 9> methods{"truth", "none",   "static",   "blend",   "box",
+                                                  "mem",   "chrome", "rerender", "raytrace"};
+constexpr std::uint32_t framesOfMotion = 24;
+constexpr double carStep = 0.15;  ///< metres a frame: 4.5 m/s at 30 frames a second
+
+/// Pixels of one reflector, or of all.
+CloseViews::Counts pixelsOf(const SquareShot& shot) {
+    return [reflector = shot.reflector](const TracedPicture& picture, std::size_t i) {
+        if (picture.vehicle[i] < firstStandingId) return false;
+        return !reflector || picture.vehicle[i] == firstStandingId + *reflector;
+    };
 }
 
-std::vector<std::uint32_t> indicesOf(std::span<const SeenVehicle> seen) {
-    std::vector<std::uint32_t> indices;
-    for (const SeenVehicle& v : seen) indices.push_back(v.index);
-    return indices;
+void measureShot(const Options& options, CloseViews& views, const SquareShot& shot, FrameScene frame,
+                 ResultFile& results, Table& table) {
+    frame.views = {shot.view};
+    measureCloseUp(options, views, {shot.name, "square", frame, methods, pixelsOf(shot)}, results, table);
 }
 
-/// Errors of every method on the pixels of one reflector (or of all), against many rays through each.
-class Errors {
-  public:
-    Errors(const Options& options, PreparedScene& stage)
-        : options_(options),
-          stage_(stage),
-          target_(options.resolution),
-          rays_(stage.scene.city, stage.scene.models),
-          close_(stage.scene.city, stage.scene.models) {
-        stage.renderer.setCloseScene(&close_);
-    }
-    ~Errors() { stage_.renderer.setCloseScene(nullptr); }
-
-    void measure(const SquareShot& shot, FrameScene frame, ResultFile& results, Table& table) {
-        SceneRenderer& renderer = stage_.renderer;
-        frame.views = {shot.view};
-        renderer.prepare(frame);
-        const std::vector<SeenVehicle> seen = seenIn(renderer, frame.views);
-        rays_.prepare(frame);
-        const std::vector<unsigned char> mask = pixelsOf(shot);
-        const auto pixels = std::count(mask.begin(), mask.end(), 1);
-        if (pixels == 0) {
-            spdlog::warn("{}: nothing of it is seen", shot.name);
-            return;
-        }
-        std::vector<glm::vec3> truth;
-        const std::vector<std::pair<std::string, std::optional<ReflectionMethod>>> methods{
-            {"truth", std::nullopt},
-            {"none", ReflectionMethod::none},
-            {"static", ReflectionMethod::fixed},
-            {"blend", ReflectionMethod::blend},
-            {"box", ReflectionMethod::box},
-            {"mem", ReflectionMethod::mem},
-            {"chrome", ReflectionMethod::mem},
-            {"rerender", ReflectionMethod::rerender},
-            {"raytrace", ReflectionMethod::raytrace}};
-        for (const auto& [name, method] : methods) {
-            if (interrupted()) return;
-            ReflectionSettings settings;
-            settings.method = method.value_or(ReflectionMethod::none);
-            settings.quality = options_.quality;
-            settings.everyFrame = true;
-            const std::unique_ptr<ReflectionSource> source =
-                method ? engineSource(stage_.scene, stage_.reflections, settings, rays_) : tracedTruth(rays_);
-            renderer.prepare(frame);
-            source->beginFrame(frame, seen, renderer);
-            ChromePlan plan;
-            if (name == "chrome")
-                plan = planChrome(frame, indicesOf(seen), stage_.scene.models, close_.parts, {});
-            renderer.drawView(shot.view, source->forView(shot.view, renderer), target_.framebuffer(), {},
-                              {&plan, 0, {}});
-            if (name == "chrome") {
-                const ChromeCounts& c = renderer.counters().chrome;
-                spdlog::info(
-                    "{}: {} jobs, {} meshes, {} vertices, {} searched, {} triangles, {:.1f} ms ({:.1f} "
-                    "searching)",
-                    shot.name, c.jobs, c.meshes, c.vertices, c.searched, c.triangles, c.milliseconds,
-                    c.searchMilliseconds);
-            }
-            const Image8 image = readPixels(target_.framebuffer(), target_.size());
-            const std::string file = fileName(shot.name, name);
-            writePng({image.size.x, image.size.y, image.rgba}, options_.out / file);
-            const std::vector<glm::vec3> shown = toFloat(image);
-            if (!method) truth = shown;
-            const int w = image.size.x, h = image.size.y;
-            const double psnr = reflection::psnr({w, h, shown}, {w, h, truth}, mask);
-            const double flip = reflection::meanError(reflection::flip({w, h, shown}, {w, h, truth}), mask);
-            results.add({{"what", shot.name},
-                         {"method", name},
-                         {"city", options_.city},
-                         {"pixels", pixels},
-                         {"psnr_db", psnr},
-                         {"mean_flip", flip}});
-            table.push_back({file, std::to_string(pixels), fixed(psnr, 1), fixed(flip, 4), "", "", "", ""});
-        }
-    }
-
-    const CloseScene& close() const { return close_; }
-
-  private:
-    std::vector<unsigned char> pixelsOf(const SquareShot& shot) const {
-        TraceOptions plain;
-        plain.plain = true;
-        const TracedPicture picture = rays_.render(shot.view, plain);
-        std::vector<unsigned char> mask(picture.kind.size());
-        for (std::size_t i = 0; i < mask.size(); ++i) {
-            if (picture.kind[i] != SeenKind::vehicle || picture.vehicle[i] < firstStandingId) continue;
-            mask[i] = !shot.reflector || picture.vehicle[i] == firstStandingId + *shot.reflector ? 1 : 0;
-        }
-        return mask;
-    }
-
-    const Options& options_;
-    PreparedScene& stage_;
-    OffscreenTarget target_;
-    RayTracer rays_;
-    CloseScene close_;
-};
+/// A reflector that the car parked beside it drives past.
+void measurePassing(const Options& options, CloseViews& views, const SquareShot& shot,
+                    const FrameScene& parked, ResultFile& results, Table& table) {
+    const std::string& name = shot.name;
+    measureMotion(
+        options, views, name + ", which drives by",
+        [&](std::uint32_t k) {
+            FrameScene frame = parked;
+            frame.views = {shot.view};
+            vehicles::VehiclePose& car = frame.vehicles.front();
+            const double along = carStep * (k - 0.5 * framesOfMotion);
+            car.position += along * glm::dvec3(std::cos(car.heading), std::sin(car.heading), 0);
+            car.speed = 30 * carStep;
+            return frame;
+        },
+        framesOfMotion, pixelsOf(shot), results, table);
+}
 
 struct Case {
     std::string name;
@@ -245,25 +169,28 @@ int benchSquare(const Options& options) {
     const Scene& scene = stage.scene;
     vehicles::Traffic traffic = busyTraffic(scene, options.seed, options.cars.front(), lookedAhead);
     {
-        Errors errors(options, stage);
+        CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality);
         const FrameScene frame =
             assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {}, stage.scene.staged);
         for (const SquareShot& shot : shots) {
             if (interrupted()) break;
-            errors.measure(shot, frame, results, table);
+            measureShot(options, views, shot, frame, results, table);
             if (!shot.reflector || !shot.name.ends_with("near")) continue;
             SquareShot parkedBy = shot;
             parkedBy.name = scene.city.reflectors[*shot.reflector].name + " beside a car";
             FrameScene parked = frame;
             parkBeside(parked, scene, *shot.reflector, 0.5);
-            errors.measure(parkedBy, parked, results, table);
+            measureShot(options, views, parkedBy, parked, results, table);
             if (scene.city.reflectors[*shot.reflector].stuff == city::StandingReflector::Stuff::chrome &&
-                !interrupted())
+                !interrupted()) {
+                measurePassing(options, views, parkedBy, parked, results, table);
+                if (interrupted()) break;
                 measureChromeCost(
-                    options, stage, errors.close(), parkedBy.name, parkedBy.view, parked,
+                    options, stage, views.close(), parkedBy.name, parkedBy.view, parked,
                     static_cast<std::uint32_t>(parked.vehicles.size() - scene.city.reflectors.size()) +
                         *shot.reflector,
                     results, table);
+            }
         }
     }
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);

@@ -24,14 +24,6 @@ bool staged(const vehicles::VehiclePose& pose) {
     return pose.id >= firstStagedId && pose.id < firstStandingId;
 }
 
-void moveStaged(FrameScene& frame, const Scene& scene, double seconds) {
-    const std::vector<vehicles::VehiclePose> poses = stagedPoses(scene.staged, settlingTime + seconds);
-    for (vehicles::VehiclePose& pose : frame.vehicles)
-        if (staged(pose))
-            for (const vehicles::VehiclePose& now : poses)
-                if (now.id == pose.id) pose = now;
-}
-
 /// A vehicle's box and places in its frame.
 struct Box {
     glm::dvec3 low, high;
@@ -75,6 +67,14 @@ std::optional<ChromeJob> largest(const FrameScene& frame, const Scene& scene, co
 }
 
 }  // namespace
+
+void moveStaged(FrameScene& frame, const Scene& scene, double seconds) {
+    const std::vector<vehicles::VehiclePose> poses = stagedPoses(scene.staged, settlingTime + seconds);
+    for (vehicles::VehiclePose& pose : frame.vehicles)
+        if (staged(pose))
+            for (const vehicles::VehiclePose& now : poses)
+                if (now.id == pose.id) pose = now;
+}
 
 std::vector<KerbsideShot> kerbsideShots(const Scene& scene, const ChromeParts& parts, const FrameScene& frame,
                                         glm::ivec2 resolution, double seconds) {

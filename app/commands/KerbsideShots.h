@@ -26,4 +26,7 @@ struct KerbsideShot {
 std::vector<KerbsideShot> kerbsideShots(const Scene& scene, const ChromeParts& parts, const FrameScene& frame,
                                         glm::ivec2 resolution, double seconds);
 
+/// The frame's staged vehicles where they are so many seconds after their start.
+void moveStaged(FrameScene& frame, const Scene& scene, double seconds);
+
 }  // namespace app
