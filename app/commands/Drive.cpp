@@ -11,7 +11,6 @@
 #include "app/commands/Calibration.h"
 #include "app/commands/CityMirrors.h"
 #include "app/display/OffscreenTarget.h"
-#include "app/frame/ChromePlan.h"
 #include "app/frame/CloseScene.h"
 #include "app/frame/WetRoad.h"
 #include "app/report/Timing.h"
@@ -38,6 +37,7 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
                 options.chrome,  options.chromeShare, options.weather},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
+      waitForChrome_(options.offscreen || options.fixedQuality),
       lighting_(scene.lighting) {
     makeRenderer();
     preparation_.cell = static_cast<float>(options.cell);
@@ -73,11 +73,17 @@ ChromePlan Drive::chromePlan(std::span<const SeenVehicle> seen) {
     if (!settings_.chrome || settings_.method == ReflectionMethod::raytrace) return {};
     if (!closeScene_) {
         closeScene_ = std::make_unique<CloseScene>(scene_->city, scene_->models);
+        closeScene_->parts.keepIn(cacheFolder() / "chrome",
+                                  [](const std::string& text) { spdlog::warn("{}", text); });
         renderer_->setCloseScene(closeScene_.get());
     }
     std::vector<std::uint32_t> indices;
     for (const SeenVehicle& vehicle : seen) indices.push_back(vehicle.index);
-    return planChrome(frame_, indices, scene_->models, closeScene_->parts, {});
+    ChromePlanOptions options;
+    options.wait = waitForChrome_;
+    ChromePlan plan = planChrome(frame_, indices, scene_->models, closeScene_->parts, options, &chromeFades_);
+    chromeFades_.follow(plan);
+    return plan;
 }
 
 void Drive::govern(const CarryOn& calibrating) {
@@ -265,6 +271,8 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
         chrome = chromePlan(seen);
         stats.chromeParts = chrome.parts;
         stats.chromeLeftOut = chrome.leftOut;
+        stats.chromeMaking = chrome.making;
+        if (closeScene_) stats.chromeBytes = closeScene_->parts.bytes();
     }
     ChromeDrawing chromeDrawing;
     chromeDrawing.share = settings_.chromeShare;

@@ -9,6 +9,7 @@
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/frame/AssembleFrame.h"
+#include "app/frame/ChromePlan.h"
 #include "app/frame/DriveSettings.h"
 #include "app/frame/Governor.h"
 #include "app/frame/MirrorPlan.h"
@@ -19,7 +20,6 @@
 
 namespace app {
 
-struct ChromePlan;
 struct CloseScene;
 
 /// How a budget or an error was met in a frame.
@@ -41,6 +41,8 @@ struct FrameStats {
     MirrorCounters mirrors;
     std::uint32_t chromeParts = 0;    ///< of the vehicles seen
     std::uint32_t chromeLeftOut = 0;  ///< jobs for want of room
+    std::uint32_t chromeMaking = 0;   ///< jobs that wait for their reflectors
+    std::size_t chromeBytes = 0;      ///< of reflectors, held now
     Governed governed;
 };
 
@@ -109,6 +111,8 @@ class Drive {
     MirrorPlanner mirrorPlanner_;
     MirrorPlan mirrorPlan_;                   ///< of the last frame
     std::unique_ptr<CloseScene> closeScene_;  ///< made when first needed
+    ChromeFades chromeFades_;
+    bool waitForChrome_;  ///< for its reflectors: pictures must not depend on how fast they are made
     std::unique_ptr<SceneRenderer> renderer_;
     Lighting lighting_;
     std::unique_ptr<RayTracer> rays_;  ///< made when first needed

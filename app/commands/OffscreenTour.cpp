@@ -67,7 +67,9 @@ std::unique_ptr<VideoWriter> openVideo(const Options& options) {
 
 }  // namespace
 
-int runOffscreenTour(const Options& options) {
+int runOffscreenTour(const Options& asked) {
+    Options options = asked;
+    options.offscreen = true;
     requireWritable(options.out / "tour.mp4");
     const OffscreenContext context;
     spdlog::info("drawing without a window on {}", context.renderer());

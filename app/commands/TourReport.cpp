@@ -60,7 +60,9 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
     stretch->chromeJobs += chrome.jobs;
     stretch->chromeMeshes += chrome.meshes;
     stretch->chromeSearched += chrome.searched;
+    stretch->chromeDrawn += chrome.drawn;
     stretch->chromeMs.push_back(chrome.milliseconds);
+    raise(stretch->chromeReflectorBytes, stats.chromeBytes);
     raise(stretch->chromeTextureBytes, stats.drawn.chromeTextureBytes);
     raise(stretch->localMapBytes, stats.reflections.localMapBytes);
     raise(stretch->referenceMapBytes, stats.reflections.referenceMapBytes);
@@ -80,7 +82,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
     ResultFile results("tour", std::string(programVersion), renderer_);
     std::vector<std::vector<std::string>> table{{"method, quality, cars, size, hour", "frames", "ms: min",
                                                  "median", "max", "reflections", "maps a frame", "local maps",
-                                                 "chrome jobs", "their ms"}};
+                                                 "chrome jobs", "searches", "their ms"}};
     std::string governed;
     const Stretch* most = nullptr;  // memory
     for (const Stretch& stretch : stretches_) {
@@ -96,6 +98,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                          fixed(frame.max, 1), fixed(reflection.median, 1), fixed(mapsPerFrame, 1),
                          byteSize(static_cast<double>(stretch.localMapBytes)),
                          fixed(static_cast<double>(stretch.chromeJobs) / static_cast<double>(frame.n), 2),
+                         fixed(static_cast<double>(stretch.chromeSearched) / static_cast<double>(frame.n), 0),
                          fixed(timingOf(stretch.chromeMs).median, 1)});
         nlohmann::ordered_json row{{"method", methodOf(settings)},
                                    {"quality", nameOf(settings.quality)},
@@ -116,6 +119,8 @@ void TourReport::finish(bool partial, std::ostream& out) const {
             return static_cast<double>(n) / static_cast<double>(stretch.frameMs.size());
         };
         row["chrome_jobs_per_frame"] = perFrame(stretch.chromeJobs);
+        row["chrome_jobs_drawn_per_frame"] = perFrame(stretch.chromeDrawn);
+        row["chrome_reflector_bytes"] = stretch.chromeReflectorBytes;
         row["chrome_meshes_per_frame"] = perFrame(stretch.chromeMeshes);
         row["chrome_searched_per_frame"] = perFrame(stretch.chromeSearched);
         row["chrome_ms"] = toJson(timingOf(stretch.chromeMs));

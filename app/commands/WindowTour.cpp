@@ -201,6 +201,8 @@ PanelNews WindowTour::news() {
     news.mirrors = stats_.mirrors;
     news.chromeParts = stats_.chromeParts;
     news.chromeLeftOut = stats_.chromeLeftOut;
+    news.chromeMaking = stats_.chromeMaking;
+    news.chromeBytes = stats_.chromeBytes;
     news.vehicles = drive_.traffic().size();
     if (const Governor* governor = drive_.governor()) {
         news.ladder = governor->ladder().rungs();

@@ -4,6 +4,10 @@
 
 namespace app {
 
+/// Radii of a part from which on things are left to a map around it: seen from all over the part, their
+/// direction differs by less than one part in so many.
+inline constexpr double closeRadii = 12;
+
 /// How close things are searched for and drawn.
 struct ChromeDrawing {
     /// Of a vehicle's vertices, searched for themselves; the rest follow on grids (BoundingGrid).

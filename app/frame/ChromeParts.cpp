@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <condition_variable>
+#include <deque>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <mutex>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
+#include <thread>
 #include <tuple>
 #include <utility>
+
+#include "reflection/chrome/ReflectorStore.h"
 
 namespace app {
 
@@ -149,7 +155,90 @@ struct ChromeParts::Shape {
     city::Mesh mesh, companion;
     std::once_flag once;
     std::atomic<bool> made{false};
+    bool asked = false;  ///< of the maker
     reflection::Reflector reflector;
+
+    /// By whichever thread comes first; all others wait.
+    void make(const Keeper* keeper);
+};
+
+struct ChromeParts::Keeper {
+    reflection::ReflectorStore store;
+    std::function<void(const std::string&)> tell;
+
+    reflection::Reflector reflectorOf(const city::Mesh& mesh) const;
+};
+
+reflection::Reflector ChromeParts::Keeper::reflectorOf(const city::Mesh& mesh) const {
+    const std::uint64_t hash = reflection::ReflectorStore::hashOf(mesh);
+    reflection::ReflectorStore::Loaded loaded = store.load(hash);
+    if (loaded.reflector) return std::move(*loaded.reflector);
+    if (!loaded.refused.empty() && tell) tell(loaded.refused);
+    reflection::Reflector made = reflection::makeReflector(mesh);
+    try {
+        store.save(hash, made);
+    } catch (const std::runtime_error& error) {
+        if (tell) tell(error.what());
+    }
+    return made;
+}
+
+void ChromeParts::Shape::make(const Keeper* keeper) {
+    std::call_once(once, [&] {
+        const city::Mesh& whole = companion.empty() ? mesh : companion;
+        reflector = keeper != nullptr ? keeper->reflectorOf(whole) : reflection::makeReflector(whole);
+        // What the companion adds is for searches; the part's own pixels are what is seen.
+        if (!companion.empty()) {
+            reflector.pieces.resize(std::min<std::size_t>(reflector.pieces.size(), 1));
+            for (reflection::ReflectorPiece& piece : reflector.pieces) piece.mesh = mesh;
+        }
+        made.store(true, std::memory_order_release);
+    });
+}
+
+/// One thread that makes what is asked for, in the order in which it was asked for.
+class ChromeParts::Maker {
+  public:
+    explicit Maker(const Keeper* keeper) : keeper_(keeper), thread_([this] { work(); }) {}
+    ~Maker() {
+        {
+            const std::lock_guard lock(mutex_);
+            ended_ = true;
+        }
+        asked_.notify_one();
+        thread_.join();
+    }
+    void ask(Shape& shape) {
+        if (shape.asked) return;
+        shape.asked = true;
+        {
+            const std::lock_guard lock(mutex_);
+            waiting_.push_back(&shape);
+        }
+        asked_.notify_one();
+    }
+
+  private:
+    void work() {
+        for (;;) {
+            Shape* next = nullptr;
+            {
+                std::unique_lock lock(mutex_);
+                asked_.wait(lock, [this] { return ended_ || !waiting_.empty(); });
+                if (ended_) return;
+                next = waiting_.front();
+                waiting_.pop_front();
+            }
+            next->make(keeper_);
+        }
+    }
+
+    const Keeper* keeper_;
+    std::mutex mutex_;
+    std::condition_variable asked_;
+    std::deque<Shape*> waiting_;
+    bool ended_ = false;
+    std::thread thread_;  ///< last: it uses all the others
 };
 
 ChromeParts::ChromeParts() = default;
@@ -196,18 +285,22 @@ void ChromeParts::giveCompanion(std::size_t model, city::Mesh companion) {
     shapes_[part.shape]->companion = std::move(companion);
 }
 
+void ChromeParts::keepIn(const std::filesystem::path& folder, std::function<void(const std::string&)> tell) {
+    keeper_ = std::make_unique<Keeper>(Keeper{reflection::ReflectorStore(folder), std::move(tell)});
+}
+
 const reflection::Reflector& ChromeParts::reflectorOf(const ChromePart& part) const {
     Shape& shape = *shapes_[part.shape];
-    std::call_once(shape.once, [&] {
-        shape.reflector = reflection::makeReflector(shape.companion.empty() ? shape.mesh : shape.companion);
-        // What the companion adds is for searches; the part's own pixels are what is seen.
-        if (!shape.companion.empty()) {
-            shape.reflector.pieces.resize(std::min<std::size_t>(shape.reflector.pieces.size(), 1));
-            for (reflection::ReflectorPiece& piece : shape.reflector.pieces) piece.mesh = shape.mesh;
-        }
-        shape.made = true;
-    });
+    shape.make(keeper_.get());
     return shape.reflector;
+}
+
+bool ChromeParts::ready(const ChromePart& part) const {
+    Shape& shape = *shapes_[part.shape];
+    if (shape.made.load(std::memory_order_acquire)) return true;
+    if (!maker_) maker_ = std::make_unique<Maker>(keeper_.get());
+    maker_->ask(shape);
+    return false;
 }
 
 const city::Mesh& ChromeParts::meshOf(const ChromePart& part) const {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "reflection/chrome/ReflectorPieces.h"
@@ -49,10 +52,17 @@ class ChromeParts {
     bool empty() const { return shapes_.empty(); }
     std::size_t shapes() const { return shapes_.size(); }
 
+    /// From now on reflectors are kept in this folder on disk, by content. `tell` hears, from any thread, of
+    /// files that are of no use and of folders that cannot be written. Before the first reflector is made.
+    void keepIn(const std::filesystem::path& folder, std::function<void(const std::string&)> tell);
+
     /// Ready for searches, in a frame with the axes of body or wheel and its origin in the part's `centre`.
-    /// Made when it is first asked for (tens of milliseconds; a scene without chrome near the viewer makes
-    /// none), by any thread, and kept.
+    /// Made when it is first asked for (0.1 to 0.35 s; a scene without chrome near the viewer makes none), by
+    /// any thread, and kept. Waits for it.
     const reflection::Reflector& reflectorOf(const ChromePart& part) const;
+    /// Whether it is there. If not, it is being made in the background from now on. From one thread at a
+    /// time.
+    bool ready(const ChromePart& part) const;
     /// A part's own triangles, in the same frame.
     const city::Mesh& meshOf(const ChromePart& part) const;
     std::size_t reflectorsMade() const;
@@ -60,8 +70,12 @@ class ChromeParts {
 
   private:
     struct Shape;
+    struct Keeper;
+    class Maker;
     std::vector<std::vector<ChromePart>> models_;
     std::vector<std::unique_ptr<Shape>> shapes_;
+    std::unique_ptr<Keeper> keeper_;
+    mutable std::unique_ptr<Maker> maker_;  ///< ends before what it works on
 };
 
 /// The connected components of a mesh's chrome, corners joined by position but across creases: what

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 
 #include "app/frame/StandingReflectors.h"
 #include "app/frame/VehicleLevels.h"
@@ -20,6 +21,9 @@ constexpr double full = 2;
 /// A part shows at least what is within so many times its distance from its map's middle: there the map is
 /// off.
 constexpr double mapRadii = 3;
+
+/// Of the size at which a part needs its reflector, from where on it is made in the background.
+constexpr double madeFrom = 0.5;
 
 double rise(double value, double from) {
     const double t = std::clamp((value / from - 1) / (full - 1), 0.0, 1.0);
@@ -98,9 +102,26 @@ reflection::PixelRect pixelsOfBox(const glm::mat4& clipFromBox, const glm::ivec2
     return {inside(glm::floor(low)), inside(glm::ceil(high))};
 }
 
+float ChromeFades::shareOf(const ChromeName& name) const {
+    const auto at = shares_.find(name);
+    return at == shares_.end() ? 0 : at->second;
+}
+
+void ChromeFades::follow(ChromePlan& plan) {
+    std::map<ChromeName, float> now;
+    for (const ChromeName& name : plan.without) now[name] = 0;
+    for (ChromeJob& job : plan.jobs) {
+        const auto was = shares_.find(job.name);
+        if (was != shares_.end()) job.share = std::clamp(job.share, was->second - step, was->second + step);
+        now[job.name] = job.share;
+    }
+    std::erase_if(plan.jobs, [](const ChromeJob& job) { return !(job.share > 0); });
+    shares_ = std::move(now);
+}
+
 ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> seen,
                       std::span<const vehicles::VehicleModel> models, const ChromeParts& parts,
-                      const ChromePlanOptions& options) {
+                      const ChromePlanOptions& options, const ChromeFades* before) {
     ChromePlan plan;
     if (!options.on || parts.empty()) return plan;
     const auto add = [&](std::uint32_t viewIndex, std::uint32_t index, std::uint32_t p, std::uint32_t wheel) {
@@ -109,7 +130,7 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         const vehicles::VehiclePose& pose = scene.vehicles[index];
         const vehicles::VehicleModel& model = models[pose.model];
         const ChromePart& part = parts.of(pose.model)[p];
-        if (!(part.closed && part.convex) && !options.openParts) {
+        if (!(part.closed && part.convex)) {
             ++plan.open;
             return;
         }
@@ -121,6 +142,7 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
             own = glm::dvec3(model.wheels[wheel].centre) + vehicleFromPart * own;
         }
         ChromeJob job;
+        job.name = {viewIndex, pose.id, p, wheel};
         job.view = viewIndex;
         job.vehicle = index;
         job.part = p;
@@ -155,18 +177,22 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
             job.close.push_back(i);
             nearest = std::min(nearest, std::max(apart, job.radius));
         }
-        if (nearest >= job.reach) {
-            ++plan.nothingClose;
-            return;
-        }
         const double shift = job.pixels * off / (std::numbers::pi * nearest);
-        const double share = rise(job.pixels, options.leastPixels) * rise(shift, options.shift);
-        if (!(share > 0)) {
+        const double share =
+            nearest >= job.reach ? 0 : rise(job.pixels, options.leastPixels) * rise(shift, options.shift);
+        const bool early = job.pixels > madeFrom * options.leastPixels && nearest < job.reach;
+        const bool isMade = options.wait || !early || parts.ready(part);
+        if (nearest >= job.reach)
+            ++plan.nothingClose;
+        else if (!(share > 0))
             ++plan.tooSmall;
-            return;
-        }
-        job.share = static_cast<float>(share);
-        plan.jobs.push_back(std::move(job));
+        else if (!isMade)
+            ++plan.making;
+        job.share = isMade ? static_cast<float>(share) : 0;
+        if (job.share > 0 || (before != nullptr && before->shareOf(job.name) > 0))
+            plan.jobs.push_back(std::move(job));
+        else
+            plan.without.push_back(job.name);
     };
     for (std::uint32_t v = 0; v < scene.views.size(); ++v)
         for (const std::uint32_t index : seen) {
@@ -183,18 +209,24 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         }
     std::stable_sort(plan.jobs.begin(), plan.jobs.end(),
                      [](const ChromeJob& a, const ChromeJob& b) { return a.pixels > b.pixels; });
-    if (plan.jobs.size() > options.mostJobs) {
+    const auto wanted = static_cast<std::size_t>(
+        std::ranges::count_if(plan.jobs, [](const ChromeJob& job) { return job.share > 0; }));
+    if (wanted > options.mostJobs) {
         // What is barely larger than the first that has no room is barely seen: places change unnoticed.
-        const double limit = plan.jobs[options.mostJobs].pixels;
-        plan.leftOut = static_cast<std::uint32_t>(plan.jobs.size() - options.mostJobs);
-        plan.jobs.resize(options.mostJobs);
+        std::size_t room = options.mostJobs;
+        const auto first = std::ranges::find_if(
+            plan.jobs, [&](const ChromeJob& job) { return job.share > 0 && room-- == 0; });
+        const double limit = first->pixels;
         constexpr double lead = 0.25;
-        for (ChromeJob& job : plan.jobs)
+        for (ChromeJob& job : plan.jobs) {
+            if (!(job.share > 0)) continue;
             job.share *= static_cast<float>(std::clamp((job.pixels / limit - 1) / lead, 0.0, 1.0));
+            plan.leftOut += !(job.share > 0);
+        }
         std::erase_if(plan.jobs, [&](const ChromeJob& job) {
-            const bool none = !(job.share > 0);
-            plan.leftOut += none;
-            return none;
+            if (job.share > 0 || (before != nullptr && before->shareOf(job.name) > 0)) return false;
+            plan.without.push_back(job.name);
+            return true;
         });
     }
     return plan;

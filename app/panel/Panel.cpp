@@ -256,14 +256,18 @@ void Panel::Impl::drawChrome(const PanelNews& news, DriveSettings& settings) {
     const ChromeCounts& c = news.drawn.chrome;
     row("parts of vehicles in view", "%.0f", news.chromeParts);
     row("  that show what is close", "%.0f", c.jobs);
+    row("    drawn anew", "%.0f", c.drawn);
     row("  left out for want of room", "%.0f", news.chromeLeftOut);
+    row("  whose reflectors are being made", "%.0f", news.chromeMaking);
     row("meshes in them", "%.0f", c.meshes);
+    row("  left out: hidden, far, too small", "%.0f", c.leftOut);
     row("  triangles", "%.0f", static_cast<double>(c.triangles));
     row("  vertices", "%.0f", static_cast<double>(c.vertices));
     row("  searched", "%.0f", static_cast<double>(c.searched));
     row("searching, ms", "%.2f", c.searchMilliseconds);
     row("in all, ms", "%.2f", c.milliseconds);
     row("MiB", "%.1f", static_cast<double>(news.drawn.chromeTextureBytes) / (1024.0 * 1024.0));
+    row("  of reflectors", "%.1f", static_cast<double>(news.chromeBytes) / (1024.0 * 1024.0));
     ImGui::EndTable();
 }
 

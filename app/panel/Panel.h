@@ -38,7 +38,8 @@ struct PanelNews {
     ReflectionCounters reflections;
     RenderCounters drawn;
     MirrorCounters mirrors;
-    std::uint32_t chromeParts = 0, chromeLeftOut = 0;
+    std::uint32_t chromeParts = 0, chromeLeftOut = 0, chromeMaking = 0;
+    std::size_t chromeBytes = 0;  ///< of reflectors
     std::size_t vehicles = 0;
     std::span<const Rung> ladder;  ///< what a budget is held with; empty: there is none
     double position = 0;           ///< on it

@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <map>
 
+#include "app/frame/ChromeDrawing.h"
 #include "app/mirrors/LitShapes.h"
 #include "app/render/MirrorWorldChromeImpl.h"
 #include "reflection/chrome/ReflectorPieces.h"
@@ -13,10 +14,6 @@
 namespace app {
 
 namespace {
-
-/// An object farther from a reflector than so many of its radii is left to the environment map: seen from all
-/// over the reflector its direction differs by less than one part in so many.
-constexpr double closeRadii = 12;
 
 /// Points of a reflector by which others see it.
 constexpr std::size_t bodyPoints = 48;
