@@ -33,7 +33,8 @@ struct Seen {
     glm::dvec2 searched{0}, truth{0};
 };
 
-/// The virtual objects of one reflector for one share.
+/// The virtual objects of one reflector for one share. Nothing is remembered from round to round: each is as
+/// the first.
 struct Crowd {
     std::vector<std::unique_ptr<VirtualObject>> objects;  ///< meshes within pieces
     reflection::VirtualCounts counts;
@@ -41,6 +42,7 @@ struct Crowd {
     Crowd(const StagedChrome& part, double share, const reflection::VirtualOptions& how) {
         reflection::VirtualOptions options = how;
         options.share = share;
+        options.remember = false;
         for (std::size_t p = 0; p < part.reflector.pieces.size(); ++p)
             for (const CloseMesh& m : part.close)
                 objects.push_back(std::make_unique<VirtualObject>(m.positions, options));
@@ -48,14 +50,20 @@ struct Crowd {
     void update(const StagedChrome& part, const glm::dvec3& eye) {
         counts = {};
         std::size_t k = 0;
-        for (const reflection::ReflectorPiece& piece : part.reflector.pieces)
-            for (std::size_t m = 0; m < part.close.size(); ++m) {
-                const reflection::VirtualCounts c = objects[k++]->update(piece.built.map, eye, glm::dmat4(1));
-                counts.vertices += c.vertices;
-                counts.searched += c.searched;
-                counts.atOutlines += c.atOutlines;
-                counts.inBentCells += c.inBentCells;
+        std::vector<VirtualObject::Placed> placed;
+        for (const reflection::ReflectorPiece& piece : part.reflector.pieces) {
+            placed.clear();
+            for (std::size_t m = 0; m < part.close.size(); ++m)
+                placed.push_back({objects[k++].get(), glm::dmat4(1), {}});
+            VirtualObject::update(piece.built.map, eye, placed);
+            for (const VirtualObject::Placed& p : placed) {
+                counts.vertices += p.counts.vertices;
+                counts.searched += p.counts.searched;
+                counts.atOutlines += p.counts.atOutlines;
+                counts.inBentCells += p.counts.inBentCells;
+                counts.lookups += p.counts.lookups;
             }
+        }
     }
 };
 

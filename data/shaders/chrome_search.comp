@@ -2,7 +2,9 @@
 #include "chrome_map.glsl"
 #include "chrome_result.glsl"
 
-// Reflection points on a convex piece, an invocation a vertex (ReflectionSearch.cpp's searchPackets). Compiled twice: in
+// Reflection points on a convex piece, an invocation a vertex (ReflectionSearch.cpp's searchPackets;
+// the quick descents before it give the same answers without the test for hidden vertices, which packets gain from and
+// invocations do not). Compiled twice: in
 // float for all vertices; in double (REAL_IS_DOUBLE) for those that float does not settle. What neither settles is left
 // to chrome_search_thorough.comp.
 

@@ -44,9 +44,79 @@ struct Values {
     HWY_INLINE void store(Num n) { hn::Store(n.v, Doubles(), at.data()); }
 };
 
-/// Convex pieces. What has no answer here comes back outOfSteps. Everything in the map's frame and units.
-/// data/shaders/chrome_search.comp and chrome_map.glsl do the same: whoever changes a step here or in the
-/// -inl.h files changes them too (ChromeSearchGlTest compares).
+/// Lookups of the first descent, before it is known whether the reflector hides the vertex: what has arrived
+/// by then needs no test, and what has not is mostly hidden.
+constexpr int quickLookups = 7;
+
+/// Cosine between normal and line of sight below which what has arrived is asked all the same: there rounding
+/// tells.
+constexpr double surelyFaces = 1e-3;
+
+/// Convex pieces, first round: descents from the guesses, or where there are none (empty, or not a number)
+/// from a start of its own. A point before whose tangent plane eye and vertex both lie shows that a convex
+/// body does not stand between them, so what arrives is answered. Returns how many are not; which goes to
+/// `rest`. Everything in the map's frame and units.
+std::size_t searchQuickly(const ReflectorMap& map, const glm::dvec3& eye,
+                          std::span<const glm::dvec3> vertices, std::span<const glm::dvec3> guesses,
+                          std::span<ReflectionPoint> points, std::span<std::uint32_t> rest,
+                          const SearchOptions& options) {
+    const Doubles tag;
+    const std::size_t lanes = hn::Lanes(tag);
+    const EyeSide eyeSide(map, eye);
+    const Num3 eyes = num3(eye);
+    const Stretch stretch(map);
+    SearchOptions quick = options;
+    quick.lookups = std::min(options.lookups, quickLookups);
+    std::size_t left = 0;
+    for (std::size_t first = 0; first < vertices.size(); first += lanes) {
+        const std::size_t n = std::min(lanes, vertices.size() - first);
+        Points vertex;
+        for (std::size_t k = 0; k < lanes; ++k) vertex.set(k, vertices[first + std::min(k, n - 1)]);
+        const Num3 v = vertex.load();
+        Num3 start;
+        MD own = num(0) < num(1);
+        if (!guesses.empty()) {
+            Points guess;
+            for (std::size_t k = 0; k < lanes; ++k) guess.set(k, guesses[first + std::min(k, n - 1)]);
+            start = stretch.takeOut(guess.load());
+            own = hn::Not(dot(start, start) > num(0));
+        }
+        if (!hn::AllFalse(tag, own)) {
+            const Num3 made = startFor(map, eyeSide, v);
+            start = guesses.empty() ? made : choose(own, made, start);
+        }
+        const MD open = hn::Not(surelyEnters(map, stretch.takeOut(eyes), stretch.takeOut(v)));
+        const Descent descent = descend(map, eyes, v, judge(map, eyes, v, start, true), open, quick, true);
+        Points at, up;
+        Values path, error, lookups;
+        const Num3 toEye = eyes - descent.best.point, toVertex = v - descent.best.point;
+        at.store(descent.best.point);
+        up.store(descent.best.normal);
+        path.store(root(dot(toEye, toEye)) + root(dot(toVertex, toVertex)));
+        const MD faces = dot(toEye, descent.best.normal) > num(surelyFaces) * root(dot(toEye, toEye));
+        error.store(choose(hn::And(open, faces), descent.best.error, num(2)));
+        lookups.store(descent.lookups);
+        for (std::size_t k = 0; k < n; ++k) {
+            ReflectionPoint& r = points[first + k];
+            r.lookups = static_cast<std::uint8_t>(lookups.at[k]);
+            // The sine is the angle to 1e-21.
+            r.residual = std::sqrt(error.at[k]);
+            if (!(r.residual <= options.tolerance)) {
+                rest[left++] = static_cast<std::uint32_t>(first + k);
+                continue;
+            }
+            r.point = at.get(k);
+            r.normal = up.get(k);
+            r.path = path.at[k];
+            r.status = map.covered(r.point) ? ReflectionStatus::found : ReflectionStatus::unreflected;
+        }
+    }
+    return left;
+}
+
+/// Convex pieces, second round. What has no answer here comes back outOfSteps. Everything in the map's frame
+/// and units. data/shaders/chrome_search.comp and chrome_map.glsl do the same: whoever changes a step here or
+/// in the -inl.h files changes them too (ChromeSearchGlTest compares).
 void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<const glm::dvec3> vertices,
                    std::span<ReflectionPoint> points, const SearchOptions& options) {
     const Doubles tag;
@@ -111,7 +181,7 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             r.point = at.get(k);
             r.normal = up.get(k);
             r.path = path.at[k];
-            r.lookups = static_cast<std::uint8_t>(lookups.at[k]);
+            r.lookups = static_cast<std::uint8_t>(r.lookups + lookups.at[k]);
             if (hidden.at[k] > 0) {
                 r.residual = 0;
                 r.status = ReflectionStatus::hidden;
@@ -165,6 +235,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace reflection {
 
+HWY_EXPORT(searchQuickly);
 HWY_EXPORT(searchPackets);
 HWY_EXPORT(descendFrom);
 HWY_EXPORT(entryOf);
@@ -195,7 +266,7 @@ constexpr std::size_t block = 256;
 
 void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                           std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
-                          const SearchOptions& options) {
+                          const SearchOptions& options, std::span<const glm::dvec3> guesses) {
     if (map.empty() || !finite(eye)) {
         std::fill_n(points.begin(), vertices.size(), ReflectionPoint{});
         return;
@@ -204,7 +275,9 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
     const bool convex = map.bend() == Bend::convex;
     // From inside nothing is reflected: the eye sees the surface's back.
     const bool inside = convex && !(map.sample(mapEye).gauge > 1);
-    std::array<glm::dvec3, block> moved;
+    std::array<glm::dvec3, block> moved, guessed, others;
+    std::array<std::uint32_t, block> rest;
+    std::array<ReflectionPoint, block> answers;
     for (std::size_t first = 0; first < vertices.size(); first += block) {
         const std::size_t n = std::min(block, vertices.size() - first);
         const std::span<ReflectionPoint> out = points.subspan(first, n);
@@ -212,8 +285,22 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
             const glm::dvec3& v = vertices[first + k];
             moved[k] = finite(v) ? map.frame().toMap(v) : mapEye;
         }
-        if (convex && !inside)
-            HWY_DYNAMIC_DISPATCH(searchPackets)(map, mapEye, std::span(moved).first(n), out, options);
+        if (convex && !inside) {
+            std::span<const glm::dvec3> from;
+            if (!guesses.empty()) {
+                for (std::size_t k = 0; k < n; ++k) guessed[k] = map.frame().toMap(guesses[first + k]);
+                from = std::span(guessed).first(n);
+            }
+            const std::size_t left = HWY_DYNAMIC_DISPATCH(searchQuickly)(
+                map, mapEye, std::span(moved).first(n), from, out, rest, options);
+            for (std::size_t k = 0; k < left; ++k) {
+                others[k] = moved[rest[k]];
+                answers[k].lookups = out[rest[k]].lookups;
+            }
+            HWY_DYNAMIC_DISPATCH(searchPackets)
+            (map, mapEye, std::span(others).first(left), std::span(answers).first(left), options);
+            for (std::size_t k = 0; k < left; ++k) out[rest[k]] = answers[k];
+        }
         for (std::size_t k = 0; k < n; ++k) {
             ReflectionPoint& r = out[k];
             if (!finite(vertices[first + k])) {

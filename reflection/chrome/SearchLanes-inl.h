@@ -147,6 +147,14 @@ struct Entry {
     Num at;     ///< share of the way; where it does not enter, its nearest point
 };
 
+/// Segments (ends with the stretch taken out) that come nearer to the centre than any point of the surface.
+HWY_INLINE MD surelyEnters(const ReflectorMap& map, const Num3& from, const Num3& to) {
+    const Num3 along = to - from;
+    const Num nearest = least(most(-dot(from, along) / most(dot(along, along), num(1e-300)), num(0)), num(1));
+    const Num3 closest = from + nearest * along;
+    return dot(closest, closest) < num(map.innerRadius() * map.innerRadius());
+}
+
 /// Along a line the gauge of a convex body is convex: the tangents at both ends of a bracket meet below its
 /// least value, which either shows that the line passes outside or gives the next point of the bracket. From
 /// the outside Newton's steps on a convex function then reach the entry without passing it.

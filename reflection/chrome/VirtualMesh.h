@@ -54,8 +54,8 @@ class VirtualMesh {
     std::size_t meshVertices() const { return positions.size(); }
     /// Of the mesh, then of middles.
     std::span<const VirtualVertex> vertices() const { return image; }
-    /// Vertices on edges, in the order in which they follow the mesh's vertices: what else belongs to a vertex
-    /// (normal, colour) is mixed from its ends'.
+    /// Vertices on edges, in the order in which they follow the mesh's vertices: what else belongs to a
+    /// vertex (normal, colour) is mixed from its ends'.
     std::span<const MiddleVertex> middles() const { return added; }
     std::span<const std::uint32_t> indices() const { return drawn; }
 

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <span>
+#include <vector>
+
+#include "reflection/chrome/CellInterpolation.h"
+#include "reflection/chrome/CellTree.h"
+#include "reflection/chrome/VirtualOptions.h"
+
+namespace reflection {
+
+/// Searches that several meshes ask for at a time, so that packets are full.
+struct SearchBatch {
+    std::vector<glm::dvec3> places, guesses;  ///< guesses: not a number where there is none
+    std::vector<ReflectionPoint> answers;
+    std::vector<glm::dvec3> pathPlaces, pathFrom;
+    std::vector<PathImage> paths;
+
+    void ask(const glm::dvec3& place, const glm::dvec3& guess) {
+        places.push_back(place);
+        guesses.push_back(guess);
+    }
+};
+
+/// A mesh's image by searches at the corners of cells, chosen by what the reflection covers on screen: cells
+/// are cut where slopes at their corners show that the image bends by more than the tolerance between them,
+/// where a vertex searched for to check lies off by more, and where corners see different things; cells with
+/// fewer vertices than corners to be added are searched for vertex by vertex. Cells that the reflector's
+/// outline crosses are as smooth as others: hidden corners have images too (perturbPaths).
+///
+/// From one update to the next it is remembered which cells were cut (each sixteenth of them is judged anew),
+/// which were checked (each eighth is again), and where corners were found, as first guesses. Searches are
+/// answered in rounds: ask, take, takePaths, again and again until ask adds nothing.
+class CellImage {
+  public:
+    CellImage(std::span<const glm::vec3> positions, const VirtualOptions& options);
+
+    /// Begins an update. The map must live until it is over.
+    void begin(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh);
+    /// Adds searches; false: there are none, and the image is whole.
+    bool ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualCounts& counts);
+    /// Takes their answers and adds paths.
+    void take(SearchBatch& batch, std::span<VirtualVertex> image, VirtualCounts& counts);
+    void takePaths(const SearchBatch& batch);
+
+  private:
+    struct Node {
+        std::uint32_t known = 0;      ///< the update in which it was searched for
+        std::uint32_t continued = 0;  ///< the update in which its image was, where it is hidden
+        ReflectionStatus status = ReflectionStatus::invalid;
+        glm::dvec3 point{NAN};  ///< where it is reflected
+    };
+    struct Scene {
+        const ReflectorMap* map = nullptr;
+        glm::dvec3 eye{0};
+        glm::dmat4 reflectorFromMesh{1};
+        bool convex = true;
+        float unbent =
+            0;  ///< squared chord on screen below which a cell cannot bend by more than the tolerance
+        float widest = 0;  ///< squared chord of cells that corners alone may judge
+        glm::dvec3 place(const glm::vec3& p) const {
+            return glm::dvec3(reflectorFromMesh * glm::dvec4(glm::dvec3(p), 1));
+        }
+    };
+    /// What the corners of a cell say.
+    struct Judgement {
+        enum class Kind : std::uint8_t { smooth, check, torn, bent } kind = Kind::torn;
+        SmoothCell cell = {};
+    };
+
+    glm::vec3 position(std::uint32_t at) const {
+        return {tree.along(0)[at], tree.along(1)[at], tree.along(2)[at]};
+    }
+    Judgement judge(std::uint32_t cell) const;
+    /// Whether the vertex searched for to check a cell lies where its corners say.
+    bool confirms(const SmoothCell& cell, const ReflectionPoint& r) const;
+    /// Cuts a cell whose corners do not tell its vertices, or has them searched for.
+    void fail(std::uint32_t cell);
+    std::size_t newNodes(const CellTree::Cell& cell) const;
+    /// Where a vertex of a cell may be reflected, by its corners; not a number where they do not tell.
+    glm::dvec3 guessIn(const CellTree::Cell& cell, std::uint32_t place) const;
+    void continueHidden(SearchBatch& batch);
+
+    VirtualOptions settings;
+    CellTree tree;
+    Scene scene;
+    std::uint32_t update = 0;
+    bool interpolated = false;
+    std::vector<Node> nodes;
+    std::vector<PathImage> images;       ///< at nodes
+    std::vector<std::uint8_t> wasCut;    ///< cells
+    std::vector<std::uint32_t> wasGood;  ///< cells: the update in which they were smooth
+    std::vector<std::uint32_t> open;     ///< cells whose corners have been asked for
+    std::vector<std::uint32_t> next;     ///< cells whose corners are to be
+    std::vector<std::uint32_t> exact;    ///< vertices to be searched for, as places in the tree's order
+    std::vector<glm::dvec3> exactGuesses;
+    std::vector<SmoothCell> smooth, checked;
+    std::vector<std::uint32_t> doubtful;
+    std::vector<std::uint32_t> askedNodes, askedExact, askedPaths;
+    std::vector<SmoothCell> askedChecks;
+    std::size_t firstAnswer = 0, firstPath = 0;
+};
+
+}  // namespace reflection
