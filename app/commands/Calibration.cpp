@@ -87,7 +87,7 @@ Detail finestDetail(const CityMirrors* mirrors) {
 }
 
 /// Each knob turned down alone, fine to coarse.
-std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirrors) {
+std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirrors, bool chrome) {
     std::vector<Trial> trials;
     const auto add = [&](Knob knob, std::initializer_list<double> values) {
         for (const double value : values) trials.push_back({knob, value, 0, 0});
@@ -104,6 +104,7 @@ std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirro
     // budget (medians of 11.7 to 13.8 ms of 16.1).
     add(Knob::scale, {0.92, 0.85, 0.77, 0.7, 0.65, 0.6, 0.55, 0.5, 0.42, 0.35});
     if (antialiasing == Antialiasing::fxaa) add(Knob::antialiasing, {0.5, 0});
+    if (chrome) add(Knob::chromePixels, {48, 96, ChromeDetail::none});
     if (mirrors == nullptr) return trials;
     // One reflection less is one picture less: from half of them to none.
     const MirrorDetail most = mirrors->most();
@@ -127,6 +128,7 @@ std::string keyOf(const Scene& scene, const CalibrationOptions& options) {
     if (const CityMirrors* mirrors = mirrorsOf(options))
         key << "; windows " << mirrors->most().maps << " in a row " << mirrors->most().depth
             << (mirrors->wet() ? "; wet" : "");
+    if (options.close != nullptr) key << "; close chrome";
     return key.str();
 }
 
@@ -209,7 +211,7 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
         }
     }
 
-    std::vector<Trial> trials = trialsFor(options.antialiasing, mirrorsOf(options));
+    std::vector<Trial> trials = trialsFor(options.antialiasing, mirrorsOf(options), options.close != nullptr);
     const std::vector<Clip> clips = recordClips(scene, lighting, options);
     // The rungs are about as many as the trials, not known before.
     const std::size_t steps = 2 * DetailBench::steps(clips.size(), 1 + trials.size());
@@ -224,7 +226,7 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
     ReflectionSettings reflecting;
     reflecting.mapsOn = options.mapsOn;
     reflecting.gpuMapBytes = options.gpuMapBytes;
-    DetailBench bench(scene, prepared, renderer, reflecting, clips, options.mirrors);
+    DetailBench bench(scene, prepared, renderer, reflecting, clips, options.mirrors, options.close);
 
     const Detail full = finestDetail(mirrorsOf(options));
     std::vector<Detail> alone{full};

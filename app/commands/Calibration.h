@@ -14,6 +14,8 @@
 
 namespace app {
 
+struct CloseScene;
+
 struct CalibrationOptions {
     glm::ivec2 resolution{1280, 720};
     std::uint64_t seed = 1;
@@ -22,6 +24,8 @@ struct CalibrationOptions {
     std::size_t gpuMapBytes = ReflectionSettings{}.gpuMapBytes;
     /// Windows and wet streets are drawn and go up and down the ladder; null, or where there are none: not.
     CityMirrors* mirrors = nullptr;
+    /// Close chrome is drawn and goes up and down the ladder; null: not. The renderer has it.
+    const CloseScene* close = nullptr;
     std::string renderer;  ///< GL_RENDERER: what is measured holds for it alone
     bool useCache = true;
     std::filesystem::path cache;  ///< empty: the user's cache folder

@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "app/commands/MirrorMask.h"
+#include "app/frame/ChromePlan.h"
+#include "app/frame/CloseScene.h"
 #include "app/report/Progress.h"
 #include "app/report/Timing.h"
 #include "reflection/gl/SoftwareRenderer.h"
@@ -47,12 +49,13 @@ reflection::FlipImage seen(const std::vector<glm::vec3>& pixels, glm::ivec2 size
 
 DetailBench::DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                          const ReflectionSettings& settings, std::span<const Clip> clips,
-                         CityMirrors* mirrors)
+                         CityMirrors* mirrors, const CloseScene* close)
     : scene_(scene),
       prepared_(prepared),
       renderer_(renderer),
       settings_(settings),
       mirrors_(mirrors != nullptr && mirrors->any() ? mirrors : nullptr),
+      close_(close),
       clips_(clips),
       target_(clips.front().front().views.front().size) {
     if (mirrors_ != nullptr) full_.mirrors = mirrors_->most();
@@ -182,7 +185,18 @@ std::pair<double, double> DetailBench::draw(const FrameScene& frame, ReflectionE
         reflectionMs = reflecting.elapsed();
         reflections.textures = engine->textures();
     }
-    renderer_.drawView(view, reflections, target_.framebuffer(), planar);
+    ChromePlan chrome;
+    if (close_ != nullptr && engine != nullptr) {
+        std::vector<std::uint32_t> seen;
+        for (const auto& v : renderer_.visibleVehicles(view)) seen.push_back(v.index);
+        ChromePlanOptions options;
+        options.leastPixels = detail.chrome.leastPixels;
+        chrome = planChrome(frame, seen, scene_.models, close_->parts, options);
+    }
+    // Each detail pays for its own, though all draw the same frames in turn.
+    ChromeDrawing anew;
+    anew.keep = false;
+    renderer_.drawView(view, reflections, target_.framebuffer(), planar, {&chrome, 0, anew});
     finishDrawing();
     return {watch.elapsed() - reflectionMs, reflectionMs};
 }

@@ -18,6 +18,8 @@
 
 namespace app {
 
+struct CloseScene;
+
 /// Draws details over clips of traffic, interleaved frame by frame, times them and compares them with
 /// re-rendering every car, drawn in full.
 class DetailBench {
@@ -32,10 +34,11 @@ class DetailBench {
     };
 
     /// Keeps references to everything. Each clip has framesBefore + framesMeasured frames.
-    /// `mirrors`: what windows and wet streets show; may be null.
+    /// `mirrors`: what windows and wet streets show; may be null. `close`: what chrome shows of close things,
+    /// which the renderer has; may be null.
     DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                 const ReflectionSettings& settings, std::span<const Clip> clips,
-                CityMirrors* mirrors = nullptr);
+                CityMirrors* mirrors = nullptr, const CloseScene* close = nullptr);
 
     /// Units of work of a call of `measure`, for `goOn`, which is called after each and
     /// ends all by false.
@@ -79,6 +82,7 @@ class DetailBench {
     SceneRenderer& renderer_;
     ReflectionSettings settings_;
     CityMirrors* mirrors_;
+    const CloseScene* close_;
     Detail full_;  ///< what is measured against
     std::span<const Clip> clips_;
     OffscreenTarget target_;

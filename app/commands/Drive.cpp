@@ -69,18 +69,22 @@ MirrorSettings Drive::mirrorSettings(const View& view) const {
     return settings;
 }
 
+void Drive::makeCloseScene() {
+    if (closeScene_) return;
+    closeScene_ = std::make_unique<CloseScene>(scene_->city, scene_->models);
+    closeScene_->parts.keepIn(cacheFolder() / "chrome",
+                              [](const std::string& text) { spdlog::warn("{}", text); });
+    renderer_->setCloseScene(closeScene_.get());
+}
+
 ChromePlan Drive::chromePlan(std::span<const SeenVehicle> seen) {
     if (!settings_.chrome || settings_.method == ReflectionMethod::raytrace) return {};
-    if (!closeScene_) {
-        closeScene_ = std::make_unique<CloseScene>(scene_->city, scene_->models);
-        closeScene_->parts.keepIn(cacheFolder() / "chrome",
-                                  [](const std::string& text) { spdlog::warn("{}", text); });
-        renderer_->setCloseScene(closeScene_.get());
-    }
+    makeCloseScene();
     std::vector<std::uint32_t> indices;
     for (const SeenVehicle& vehicle : seen) indices.push_back(vehicle.index);
     ChromePlanOptions options;
     options.wait = waitForChrome_;
+    if (governor_) options.leastPixels = governor_->detail().chrome.leastPixels;
     ChromePlan plan = planChrome(frame_, indices, scene_->models, closeScene_->parts, options, &chromeFades_);
     chromeFades_.follow(plan);
     return plan;
@@ -107,6 +111,10 @@ void Drive::govern(const CarryOn& calibrating) {
         windows.fade = settings_.mirrorFade;
         CityMirrors mirrors(*scene_, windows, settings_.weather == Weather::wet);
         options.mirrors = &mirrors;
+        if (settings_.chrome) {
+            makeCloseScene();
+            options.close = closeScene_.get();
+        }
         const Stopwatch watch;
         Calibration calibration = calibrate(*scene_, lighting_, prepared_, *renderer_, options);
         if (!calibration.complete || calibration.ladder.empty()) {
@@ -320,8 +328,9 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const Ca
         makeRenderer();
         ladder_.reset();
     }
-    // What was measured with windows or rain does not hold without.
-    if (wanted.mirrors != old.mirrors || wanted.weather != old.weather) ladder_.reset();
+    // What was measured with windows, rain or close chrome does not hold without.
+    if (wanted.mirrors != old.mirrors || wanted.weather != old.weather || wanted.chrome != old.chrome)
+        ladder_.reset();
     const bool relit = wanted.hour != old.hour;
     const Lighting lighting =
         relit ? lightingAt(wanted.hour, scene_->city.frame ? scene_->city.frame->latitude() : 50) : lighting_;

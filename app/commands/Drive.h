@@ -86,6 +86,7 @@ class Drive {
     MirrorSettings mirrorSettings(const View& view) const;
     /// Which chrome shows close things itself: only maps need that, rays see all.
     ChromePlan chromePlan(std::span<const SeenVehicle> seen);
+    void makeCloseScene();
     ReflectionSettings reflectionSettings() const;
     void lendRays();
     /// Heightfield, maps and engine for this light; the old ones stay when it is cut short, and until then.

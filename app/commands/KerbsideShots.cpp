@@ -18,6 +18,7 @@ namespace app {
 namespace {
 
 constexpr double fieldOfView = 60;  // degrees, as the tour's
+constexpr double worthAView = 12;   // pixels of a part's width
 constexpr double step = 1.0 / 60;   // seconds between the moments looked at
 
 bool staged(const vehicles::VehiclePose& pose) {
@@ -61,7 +62,9 @@ std::optional<ChromeJob> largest(const FrameScene& frame, const Scene& scene, co
     std::vector<std::uint32_t> candidates;
     for (std::uint32_t i = 0; i < frame.vehicles.size(); ++i)
         if (staged(frame.vehicles[i]) && frame.vehicles[i].speed == 0) candidates.push_back(i);
-    const ChromePlan plan = planChrome(frame, candidates, scene.models, parts, {});
+    ChromePlanOptions options;
+    options.leastPixels = worthAView;
+    const ChromePlan plan = planChrome(frame, candidates, scene.models, parts, options);
     if (plan.jobs.empty()) return std::nullopt;
     return plan.jobs.front();
 }

@@ -159,7 +159,8 @@ void addChrome(CLI::App& parser, Options& o) {
         .add_option_function<std::string>(
             "--chrome", [&o](const std::string& text) { o.chrome = text == "auto"; },
             "chrome that is large in the picture shows what is close to it where it truly appears: auto "
-            "(default) or off")
+            "(default) or off; its reflectors are made in the background (waited for offscreen and with "
+            "--fixed-quality), once: they are kept in the cache folder. A budget asks for larger chrome")
         ->type_name("auto|off")
         ->check(CLI::IsMember({"auto", "off"}));
     parser

@@ -13,7 +13,8 @@ struct ChromeDrawing {
     /// Of a vehicle's vertices, searched for themselves; the rest follow on grids (BoundingGrid).
     double share = 0.096;
     double tolerance = 0.5;  ///< pixels by which a reflected edge may be off where it is drawn straight
-    double detail = 1;       ///< pixels in the chrome by which close vehicles' levels may be off
+    double detail = 1;       ///< pixels in the chrome by which close things' levels may be off
+    bool keep = true;        ///< what nothing moved; false: for measuring
 };
 
 /// What one view's close chrome took.

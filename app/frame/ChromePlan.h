@@ -10,6 +10,7 @@
 
 #include "app/frame/ChromeDrawing.h"
 #include "app/frame/ChromeParts.h"
+#include "app/frame/Detail.h"
 #include "app/frame/FrameScene.h"
 #include "reflection/planar/EyeView.h"
 
@@ -71,7 +72,7 @@ struct ChromePlanOptions {
     double closeRadii = app::closeRadii;
     /// Width on screen, pixels, from which on a part shows what its surroundings are and not only their
     /// light.
-    double leastPixels = 12;
+    double leastPixels = ChromeDetail{}.leastPixels;
     /// Pixels by which the local map may show close things off their places. It is made around the middle of
     /// its vehicle: a feature at distance d seen from a part that lies s off that middle turns by about s /
     /// d, and a part that shows the half space over D pixels shifts it by D s / (pi d).

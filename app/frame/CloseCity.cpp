@@ -54,9 +54,8 @@ class Patch {
             const std::array<city::Vertex, 3> v{placed(t[0]), placed(t[1]), placed(t[2])};
             const glm::vec3 low = glm::min(v[0].position, glm::min(v[1].position, v[2].position));
             const glm::vec3 high = glm::max(v[0].position, glm::max(v[1].position, v[2].position));
-            if (glm::any(glm::greaterThan(low, glm::vec3(half_))) ||
-                glm::any(glm::lessThan(high, glm::vec3(-half_))))
-                continue;
+            const glm::vec3 nearest = glm::clamp(glm::vec3(0), low, high);
+            if (glm::dot(nearest, nearest) > half_ * half_) continue;
             const bool whole = glm::all(glm::greaterThanEqual(low, glm::vec3(-half_))) &&
                                glm::all(glm::lessThanEqual(high, glm::vec3(half_)));
             const bool holes = v[0].material < materials_.size() && materials_[v[0].material].cutout;

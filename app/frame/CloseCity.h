@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// What stands close to a place, cut off at a box around it.
+/// What stands close to a place, cut off at the box of a ball around it.
 struct CloseCityPatch {
     /// Around `place`, axes of the world, of meshes with at most `CloseCity::mostTriangles` each. Every
     /// placed thing has its own, so that those that are not seen can be left out.
@@ -28,8 +28,9 @@ class CloseCity {
 
     /// Metres by which a placed thing's level may be off, by its box around the place, axes of the world.
     using Allowed = std::function<double(const city::Aabb&)>;
-    /// Everything within a box of half side `reach` (metres, > 0), polygons cut off at it. Placed things at
-    /// the coarsest level that is allowed. Cost: linear in the triangles of the chunks that the box touches.
+    /// Everything within a ball of radius `reach` (metres, > 0), and little more: polygons that may reach
+    /// into it, cut off at its box. Placed things at the coarsest level that is allowed. Cost: linear in the
+    /// triangles of the chunks that the box touches.
     CloseCityPatch gather(const glm::dvec3& place, double reach, const Allowed& allowed) const;
 
   private:

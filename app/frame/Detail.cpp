@@ -52,6 +52,7 @@ Detail blend(const Detail& a, const Detail& b, double t) {
                       byRatio(a.drawing.vehicleTolerance, b.drawing.vehicleTolerance, t)};
     detail.mirrors = {byRatio(a.mirrors.texels, b.mirrors.texels, t),
                       evenly(a.mirrors.maps, b.mirrors.maps, t), evenly(a.mirrors.depth, b.mirrors.depth, t)};
+    detail.chrome.leastPixels = byRatio(a.chrome.leastPixels, b.chrome.leastPixels, t);
     return detail;
 }
 
@@ -91,6 +92,11 @@ std::string givenUp(const Detail& full, const Detail& now) {
     };
     count("reflections in windows: ", fullMirrors.maps, nowMirrors.maps);
     count("windows in a row: ", fullMirrors.depth, nowMirrors.depth);
+    if (now.chrome.leastPixels > full.chrome.leastPixels)
+        add(now.chrome.leastPixels >= ChromeDetail::none
+                ? "no close things in chrome"
+                : "close things in chrome from " + number(now.chrome.leastPixels, "%.0f") +
+                      " pixels on, not " + number(full.chrome.leastPixels, "%.0f"));
     return text;
 }
 

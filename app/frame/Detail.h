@@ -47,10 +47,21 @@ struct MirrorDetail {
     }
 };
 
+/// Which chrome shows close things itself.
+struct ChromeDetail {
+    /// Width on screen, pixels, from which on a part does; it does wholly from twice as much. Half of it and
+    /// less: the local map is no worse to be seen (bench kerbside: FLIP within 0.01).
+    double leastPixels = 24;
+    static constexpr double none = 4096;  ///< no part is so large
+
+    bool operator==(const ChromeDetail&) const = default;
+};
+
 struct Detail {
     ReflectionDetail reflection;
     DrawingDetail drawing;
     MirrorDetail mirrors = {};
+    ChromeDetail chrome = {};
 
     bool operator==(const Detail&) const = default;
 };

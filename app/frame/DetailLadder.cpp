@@ -112,6 +112,8 @@ double& valueOf(Detail& detail, Knob knob) {
             return detail.mirrors.maps;
         case Knob::mirrorDepth:
             return detail.mirrors.depth;
+        case Knob::chromePixels:
+            return detail.chrome.leastPixels;
         case Knob::vehicleTolerance:
             break;
     }

@@ -77,10 +77,11 @@ enum class Knob : std::uint8_t {
     mirrorTexels,
     mirrorMaps,
     mirrorDepth,
+    chromePixels,
 };
-inline constexpr std::array<std::string_view, 11> knobNames{
-    "texel budget", "texels a pixel",    "error threshold", "candidates",  "lookups",     "scale",
-    "antialiasing", "vehicle tolerance", "mirror texels",   "mirror maps", "mirror depth"};
+inline constexpr std::array<std::string_view, 12> knobNames{
+    "texel budget", "texels a pixel",    "error threshold", "candidates",  "lookups",      "scale",
+    "antialiasing", "vehicle tolerance", "mirror texels",   "mirror maps", "mirror depth", "chrome pixels"};
 double& valueOf(Detail& detail, Knob knob);
 
 /// A knob turned down alone, from the finest detail, and what that was measured to save and to lose.

@@ -73,8 +73,8 @@ void ChromeObjects::gatherCity(const ChromeJob& job, const reflection::Reflector
     k.reach = job.reach;
     k.metresPerPixel = metresPerPixel;
     const glm::dmat4 partFromPatch = glm::inverse(job.worldFromPart) * placedAt(place);
-    k.city =
-        closeMeshes(scene_.standing.gather(place, (1 + patchLasts) * job.reach, [&](const city::Aabb& box) {
+    k.city = closeMeshes(
+        scene_.standing.gather(place, (reachShown + patchLasts) * job.reach, [&](const city::Aabb& box) {
             const CloseBox asked{box, partFromPatch};
             return closeImages(map, job.radius, eye, {&asked, 1}).front().metresPerRadian * radiansOff;
         }));
@@ -141,7 +141,7 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
                                                 glm::dvec4(turn[2], 0), glm::dvec4(pose.position, 1))});
             }
             Look& look = kept.looks[p];
-            if (look.eye != eye || look.boxes != boxes) {
+            if (!options.keep || look.eye != eye || look.boxes != boxes) {
                 look.images = closeImages(piece.built.map, job.radius, eye, boxes);
                 look.eye = eye;
                 look.boxes = boxes;
@@ -178,8 +178,8 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
         Task& task = tasks_[i];
         ChromeObject& o = *task.object;
         // Nothing moved: what was found last is there still.
-        o.changed = !(o.lastEye == task.eye && o.lastMesh == task.partFromMesh &&
-                      o.lastTolerance == task.options.tolerance);
+        o.changed = !options.keep || !(o.lastEye == task.eye && o.lastMesh == task.partFromMesh &&
+                                       o.lastTolerance == task.options.tolerance);
         if (!o.changed) return;
         o.counts = o.mesh->update(*task.map, task.eye, task.partFromMesh, task.options);
         o.stale = true;

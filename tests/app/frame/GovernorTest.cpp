@@ -459,5 +459,16 @@ TEST(DetailTest, windowsAreGivenUpWithTheirOwnWordsAndInWholeReflections) {
     EXPECT_EQ(givenUp(all, hair), "");
 }
 
+TEST(DetailTest, closeChromeIsGivenUpFromItsSmallestPartsOn) {
+    Detail all, large, none;
+    large.chrome.leastPixels = 4 * all.chrome.leastPixels;
+    none.chrome.leastPixels = ChromeDetail::none;
+    EXPECT_EQ(blend(all, large, 1), large);
+    EXPECT_NEAR(blend(all, large, 0.5).chrome.leastPixels, 2 * all.chrome.leastPixels, 1e-9);
+    EXPECT_EQ(givenUp(all, large), "close things in chrome from 96 pixels on, not 24");
+    EXPECT_EQ(givenUp(large, none), "no close things in chrome");
+    EXPECT_EQ(&valueOf(all, Knob::chromePixels), &all.chrome.leastPixels);
+}
+
 }  // namespace
 }  // namespace app
