@@ -24,7 +24,7 @@ constexpr double lookedAhead = 16;  // seconds: the cyclist of kerbside.json dri
 using Table = std::vector<std::vector<std::string>>;
 
 constexpr std::array<std::string_view, 6> methods{"truth", "none", "mem", "chrome", "rerender", "raytrace"};
-constexpr std::uint32_t framesOfMotion = 24;
+constexpr std::uint32_t framesOfMotion = 12;
 constexpr double frameTime = 1.0 / 30;  ///< seconds
 constexpr double approach = 0.08;       ///< metres a frame: somebody walks up to it
 
@@ -72,7 +72,8 @@ int benchKerbside(const Options& asked) {
     Table table{{"picture or frames", "pixels", "PSNR dB", "FLIP", "", "without, ms", "ms", "/ without"}};
     if (!stage.reflections.complete) return reportBench(options, results, table);
     const Scene& scene = stage.scene;
-    CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality);
+    CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality,
+                     {.share = options.chromeShare});
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
     const FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {}, scene.staged);
     const std::vector<KerbsideShot> shots =

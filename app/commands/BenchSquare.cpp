@@ -34,7 +34,7 @@ using Table = std::vector<std::vector<std::string>>;
 
 constexpr std::array<std::string_view, 9> methods{"truth", "none",   "static",   "blend",   "box",
                                                   "mem",   "chrome", "rerender", "raytrace"};
-constexpr std::uint32_t framesOfMotion = 24;
+constexpr std::uint32_t framesOfMotion = 12;
 constexpr double carStep = 0.15;  ///< metres a frame: 4.5 m/s at 30 frames a second
 
 /// Pixels of one reflector, or of all.
@@ -169,7 +169,8 @@ int benchSquare(const Options& options) {
     const Scene& scene = stage.scene;
     vehicles::Traffic traffic = busyTraffic(scene, options.seed, options.cars.front(), lookedAhead);
     {
-        CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality);
+        CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality,
+                         {.share = options.chromeShare});
         const FrameScene frame =
             assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {}, stage.scene.staged);
         for (const SquareShot& shot : shots) {

@@ -32,11 +32,12 @@ std::vector<glm::vec3> floats(const Picture& picture) {
 }  // namespace
 
 CloseViews::CloseViews(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-                       glm::ivec2 resolution, Quality quality)
+                       glm::ivec2 resolution, Quality quality, const ChromeDrawing& drawing)
     : scene_(scene),
       prepared_(prepared),
       renderer_(renderer),
       quality_(quality),
+      drawing_(drawing),
       target_(resolution),
       rays_(scene.city, scene.models),
       close_(scene.city, scene.models) {
@@ -81,7 +82,7 @@ void CloseViews::drawFrame(const FrameScene& frame, std::string_view method, Ref
     ChromePlan plan;
     if (chrome) plan = planChrome(frame, indicesOf(seen), scene_.models, close_.parts, {});
     renderer_.drawView(view, source.forView(view, renderer_), target_.framebuffer(), {},
-                       {chrome ? &plan : nullptr, 0, {}});
+                       {chrome ? &plan : nullptr, 0, drawing_});
     if (!chrome || !told) return;
     told->counts = renderer_.counters().chrome;
     told->plan = std::move(plan);

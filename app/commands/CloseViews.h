@@ -31,7 +31,7 @@ class ReflectionSource;
 class CloseViews {
   public:
     CloseViews(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
-               glm::ivec2 resolution, Quality quality);
+               glm::ivec2 resolution, Quality quality, const ChromeDrawing& drawing = {});
     ~CloseViews();
     CloseViews(const CloseViews&) = delete;
     CloseViews& operator=(const CloseViews&) = delete;
@@ -83,6 +83,7 @@ class CloseViews {
     const PreparedReflections& prepared_;
     SceneRenderer& renderer_;
     Quality quality_;
+    ChromeDrawing drawing_;
     OffscreenTarget target_;
     RayTracer rays_;
     CloseScene close_;

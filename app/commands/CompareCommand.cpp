@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "app/commands/Commands.h"
+#include "app/commands/CompareChrome.h"
 #include "app/commands/CompareRun.h"
 #include "app/commands/CompareWindows.h"
 #include "app/commands/PreparedScene.h"
@@ -47,6 +48,16 @@ void printWindows(const std::vector<WindowRow>& rows) {
     std::cout << formatTable(table) << "\n";
 }
 
+void printChrome(const std::vector<ChromeRow>& rows) {
+    std::vector<std::vector<std::string>> table{
+        {"close-up", "method", "parts", "pixels", "frame ms", "/ none", "FLIP", "PSNR dB"}};
+    for (const ChromeRow& row : rows)
+        table.push_back({row.view, row.method, std::to_string(row.jobs), std::to_string(row.pixels),
+                         fixed(row.frame.median, 1), fixed(row.ratioToNone, 2), fixed(row.flip, 4),
+                         fixed(row.psnr, 1)});
+    std::cout << formatTable(table) << "\n";
+}
+
 int run(const Options& options) {
     PreparedScene stage(options);
     ResultFile results("compare", std::string(programVersion), stage.context.renderer());
@@ -66,11 +77,17 @@ int run(const Options& options) {
     if (stage.reflections.complete && !interrupted())
         windows = compareWindows(stage.scene, stage.reflections, stage.renderer, settings);
 
+    ChromeComparison chrome;
+    if (stage.reflections.complete && !interrupted())
+        chrome = compareChrome(stage.scene, stage.reflections, stage.renderer, settings, options.quality);
+
     const std::vector<CompareRow>& rows = comparison.rows;
     for (const CompareRow& row : rows) results.add(toJson(row, options.city));
     for (const WindowRow& row : windows.rows) results.add(toJson(row, options.city));
+    for (const ChromeRow& row : chrome.rows) results.add(toJson(row, options.city));
     if (!rows.empty()) printRows(rows);
     if (!windows.rows.empty()) printWindows(windows.rows);
+    if (!chrome.rows.empty()) printChrome(chrome.rows);
     if (options.json) results.write(*options.json, interrupted());
     if (options.html && !rows.empty()) {
         const nlohmann::ordered_json document = results.document(interrupted());
@@ -84,7 +101,7 @@ int run(const Options& options) {
         head.frames = settings.frames;
         head.truth = comparison.truth;
         head.partial = interrupted();
-        writeTextFile(*options.html, comparePage(head, rows, comparison.strips, windows));
+        writeTextFile(*options.html, comparePage(head, rows, comparison.strips, windows, chrome));
         spdlog::info("page: {}", options.html->string());
     }
     if (interrupted()) {
@@ -102,7 +119,7 @@ Command compareCommand() {
     return {.name = "compare",
             .summary =
                 "error against time against number of cars for every method, their settings swept; and "
-                "of windows that mirror",
+                "of windows that mirror, and of close chrome",
             .groups = cityOptions | trafficOptions | severalCars | cellOption | pictureOptions |
                       durationOptions | jsonOptions | htmlOptions,
             .benches = {},

@@ -57,6 +57,14 @@ struct Box {
     }
 };
 
+/// Is the vehicle's middle in the picture?
+bool inPicture(const View& view, const vehicles::VehiclePose& pose, const vehicles::VehicleModel& model) {
+    const glm::dvec3 middle = pose.position + glm::dvec3(0, 0, 0.5 * static_cast<double>(model.height));
+    const glm::dvec4 clip =
+        glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld) * glm::dvec4(middle - view.eye, 1);
+    return clip.w > 0 && std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w;
+}
+
 /// The largest piece of a staged vehicle's chrome in the frame's view.
 std::optional<ChromeJob> largest(const FrameScene& frame, const Scene& scene, const ChromeParts& parts) {
     std::vector<std::uint32_t> candidates;
@@ -109,6 +117,7 @@ std::vector<KerbsideShot> kerbsideShots(const Scene& scene, const ChromeParts& p
             moveStaged(moved, scene, t);
             for (const vehicles::VehiclePose& pose : moved.vehicles) {
                 if (!staged(pose) || pose.speed == 0) continue;
+                if (!inPicture(shot.frame.views.front(), pose, scene.models[pose.model])) continue;
                 const Box box(pose, scene.models[pose.model]);
                 const double apart = box.distanceTo(middle) + 1e-3 * glm::length(pose.position - middle);
                 if (apart >= best) continue;

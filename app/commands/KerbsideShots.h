@@ -21,8 +21,8 @@ struct KerbsideShot {
 };
 
 /// The views of a staging file in which a staged vehicle's chrome is large enough to show close things. The
-/// moment: of the first `seconds`, that at which a staged vehicle that moves is nearest to the part without
-/// hiding any of it from the eye. `frame`: without views. Deterministic.
+/// moment: of the first `seconds`, that at which a staged vehicle that moves is nearest to the part, in the
+/// picture itself, without hiding any of the part from the eye. `frame`: without views. Deterministic.
 std::vector<KerbsideShot> kerbsideShots(const Scene& scene, const ChromeParts& parts, const FrameScene& frame,
                                         glm::ivec2 resolution, double seconds);
 

@@ -190,6 +190,27 @@ std::string windowsSection(const WindowComparison& windows) {
     return html + "</tbody></table></div>\n</section>\n";
 }
 
+/// Close-ups of chrome; nothing without any.
+std::string chromeSection(const ChromeComparison& chrome) {
+    if (chrome.rows.empty()) return "";
+    std::string html =
+        "<section id=\"chrome\">\n<h2>Close chrome</h2>\n"
+        "<p class=\"note\">Things that mirror, with others a hand&rsquo;s breadth to a metre away. "
+        "<b>chrome</b> shows what is close where it truly appears, and the local map of <b>mem</b> beyond; "
+        "errors are over the pixels of the chrome, against the truth.</p>\n";
+    for (const PictureStrip& strip : chrome.strips) html += stripSection(strip);
+    html +=
+        "<div class=\"scroll\"><table><thead><tr><th class=\"text\">view</th><th "
+        "class=\"text\">method</th><th>parts</th><th>pixels</th><th>frame ms</th><th>of none</th><th>PSNR "
+        "dB</th><th>FLIP</th></tr></thead><tbody>\n";
+    for (const ChromeRow& row : chrome.rows)
+        html += "<tr data-chrome=\"" + escaped(row.view) + "\"><td class=\"text\">" + escaped(row.view) +
+                "</td><td class=\"text\">" + escaped(row.method) + "</td><td>" + std::to_string(row.jobs) +
+                "</td><td>" + std::to_string(row.pixels) + "</td>" + cell(row.frame.median, 1) +
+                cell(row.ratioToNone, 2) + cell(row.psnr, 1) + cell(row.flip, 4) + "</tr>\n";
+    return html + "</tbody></table></div>\n</section>\n";
+}
+
 /// JSON within a script element: nothing in it may end that element.
 std::string scriptJson(const nlohmann::ordered_json& json) {
     std::string out;
@@ -205,7 +226,8 @@ void put(std::string& page, const std::string& mark, std::string_view text) {
 }  // namespace
 
 std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
-                        const std::vector<PictureStrip>& strips, const WindowComparison& windows) {
+                        const std::vector<PictureStrip>& strips, const WindowComparison& windows,
+                        const ChromeComparison& chrome) {
     nlohmann::ordered_json data = nlohmann::ordered_json::array();
     for (const CompareRow& row : rows) {
         nlohmann::ordered_json json = toJson(row, head.city);
@@ -223,7 +245,7 @@ std::string comparePage(const PageHead& head, const std::vector<CompareRow>& row
     put(page, "@DATA@", scriptJson(data));
     put(page, "@CHARTS@", embedded::charts);
     put(page, "@ROWS@", tableRows(rows));
-    put(page, "@WINDOWS@", windowsSection(windows));
+    put(page, "@WINDOWS@", windowsSection(windows) + chromeSection(chrome));
     put(page, "@STRIPS@", stripsHtml);
     put(page, "@VERDICTS@", verdictTable(rows));
     put(page, "@FACTS@", factList(head, rows));

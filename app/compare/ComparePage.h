@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/compare/ChromeRow.h"
 #include "app/compare/CompareRow.h"
 #include "app/compare/PictureStrip.h"
 #include "app/compare/WindowRow.h"
@@ -22,9 +23,10 @@ struct PageHead {
 };
 
 /// One HTML page that needs nothing but itself: charts, pictures with a slider, verdicts, and a table of all
-/// rows; the city's windows in a part of their own, where there are rows of them; with a style for paper.
-/// Texts from outside are escaped.
+/// rows; the city's windows and close-ups of chrome in parts of their own, where there are rows of them; with
+/// a style for paper. Texts from outside are escaped.
 std::string comparePage(const PageHead& head, const std::vector<CompareRow>& rows,
-                        const std::vector<PictureStrip>& strips, const WindowComparison& windows = {});
+                        const std::vector<PictureStrip>& strips, const WindowComparison& windows = {},
+                        const ChromeComparison& chrome = {});
 
 }  // namespace app

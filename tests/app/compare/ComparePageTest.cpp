@@ -150,6 +150,29 @@ TEST(ComparePageTest, showsWindowsWhereThereAreAny) {
     EXPECT_THAT(without, HasSubstr("id=\"window-data\">[]<"));
 }
 
+TEST(ComparePageTest, showsCloseChromeWhereThereIsAny) {
+    ChromeComparison chrome;
+    for (const char* method : {"none", "mem", "chrome", "rerender"}) {
+        ChromeRow row;
+        row.view = "sphere <beside> a car";
+        row.method = method;
+        row.frame = {10, 12, 20, 3};
+        row.flip = 0.125;
+        chrome.rows.push_back(row);
+    }
+    chrome.strips = strips();
+    chrome.strips.front().title = "sphere & car";
+    const std::string page = comparePage(head(), rows(), strips(), {}, chrome);
+    EXPECT_EQ(nestingFault(page), "");
+    EXPECT_EQ(count(page, "<tr data-chrome=\"sphere &lt;beside&gt; a car\">"), 4u);
+    EXPECT_THAT(page, HasSubstr("<h3>sphere &amp; car</h3>"));
+    EXPECT_THAT(comparePage(head(), rows(), strips()), Not(HasSubstr("id=\"chrome\"")));
+    const nlohmann::json row = toJson(chrome.rows[2], "boulevard");
+    EXPECT_EQ(row["method"], "chrome");
+    EXPECT_EQ(row["compared"], "chrome");
+    EXPECT_TRUE(row["psnr_db"].is_null()) << "not measured: null, not NaN";
+}
+
 TEST(ComparePageTest, isWellFormed) {
     EXPECT_EQ(nestingFault(comparePage(head(), rows(), strips())), "");
     EXPECT_EQ(nestingFault(comparePage(head(), {}, {})), "");
