@@ -25,6 +25,8 @@ constexpr double patchLasts = 0.2, detailLasts = 1.5;
 constexpr int mostHalvings = 6;
 /// Pixels across below which an image is left out.
 constexpr double leastImage = 0.7;
+/// Share over the local map's image below which errors may not grow any more: they are seen by it.
+constexpr double faintest = 0.2;
 /// Of a job's reach: things that begin beyond it are covered by the map to less than one part in fifty.
 constexpr double reachShown = 0.93;
 
@@ -97,12 +99,14 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
         kept.used = frame_;
         const glm::dmat4 partFromWorld = glm::inverse(job.worldFromPart);
         const glm::dvec3 eye(partFromWorld * glm::dvec4(pass.eye, 1));
-        const double radiansOff = options.detail / pixelsPerRadian;
+        // What is hardly seen may be off by more, so that jobs that begin or end cost little.
+        const double coarse = 1 / std::max(static_cast<double>(job.share), faintest);
+        const double radiansOff = coarse * options.detail / pixelsPerRadian;
         reflection::VirtualMeshOptions virtualOptions;
         virtualOptions.vertices.search.thorough = false;
         // The ground is cut off at the patch alone: its edges are as long as the patch.
         virtualOptions.mostHalvings = mostHalvings;
-        virtualOptions.tolerance = options.tolerance / pixelsPerRadian;
+        virtualOptions.tolerance = coarse * options.tolerance / pixelsPerRadian;
         virtualOptions.vertices.cellTolerance = 0.5 * virtualOptions.tolerance;
         const double distance = glm::length(eye);
         if (distance > 1.1 * job.radius) {
@@ -149,7 +153,7 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
             }
             const std::vector<CloseImage>& images = look.images;
             const auto leftOut = [&](const CloseImage& image) {
-                return image.hidden || image.angle * pixelsPerRadian < leastImage;
+                return image.hidden || image.angle * pixelsPerRadian < coarse * leastImage;
             };
             for (std::uint32_t i = 0; i < kept.city.size(); ++i) {
                 if (leftOut(images[i]) || awayFrom(inPatch, kept.city[i].box) > reachShown * job.reach) {
