@@ -73,14 +73,15 @@ std::vector<unsigned char> CloseViews::pixelsOf(const FrameScene& frame, const C
 }
 
 void CloseViews::drawFrame(const FrameScene& frame, std::string_view method, ReflectionSource& source,
-                           Drawn* told) {
+                           Drawn* told, ChromeFades* fades) {
     const View& view = frame.views.front();
     renderer_.prepare(frame);
     const std::vector<SeenVehicle> seen = seenIn(renderer_, frame.views);
     source.beginFrame(frame, seen, renderer_);
     const bool chrome = method == chromeName;
     ChromePlan plan;
-    if (chrome) plan = planChrome(frame, indicesOf(seen), scene_.models, close_.parts, {});
+    if (chrome) plan = planChrome(frame, indicesOf(seen), scene_.models, close_.parts, {}, fades);
+    if (chrome && fades) fades->follow(plan);
     renderer_.drawView(view, source.forView(view, renderer_), target_.framebuffer(), {},
                        {chrome ? &plan : nullptr, 0, drawing_});
     if (!chrome || !told) return;
@@ -89,8 +90,8 @@ void CloseViews::drawFrame(const FrameScene& frame, std::string_view method, Ref
 }
 
 Picture CloseViews::shown(const FrameScene& frame, std::string_view method, ReflectionSource& source,
-                          Drawn* told) {
-    drawFrame(frame, method, source, told);
+                          Drawn* told, ChromeFades* fades) {
+    drawFrame(frame, method, source, told, fades);
     Image8 image = readPixels(target_.framebuffer(), target_.size());
     return {image.size.x, image.size.y, std::move(image.rgba)};
 }
@@ -142,11 +143,12 @@ std::vector<CloseViews::Motion> CloseViews::move(const std::function<FrameScene(
     struct Side {
         std::unique_ptr<ReflectionSource> source;
         Picture now, before;
+        ChromeFades fades = {};
     };
     std::vector<Side> sides;
     std::vector<Motion> motions;
     for (const std::string_view method : methods) {
-        sides.push_back({sourceOf(method, false), {}, {}});
+        sides.push_back({sourceOf(method, false), {}, {}, {}});
         motions.push_back({});
         motions.back().method = method;
         motions.back().leastJobs = std::numeric_limits<std::uint32_t>::max();
@@ -157,7 +159,8 @@ std::vector<CloseViews::Motion> CloseViews::move(const std::function<FrameScene(
         before = std::exchange(mask, pixelsOf(frame, counts));
         for (std::size_t m = 0; m < methods.size(); ++m) {
             Drawn told;
-            sides[m].before = std::exchange(sides[m].now, shown(frame, methods[m], *sides[m].source, &told));
+            sides[m].before = std::exchange(
+                sides[m].now, shown(frame, methods[m], *sides[m].source, &told, &sides[m].fades));
             const auto jobs = static_cast<std::uint32_t>(told.plan.jobs.size());
             motions[m].mostJobs = std::max(motions[m].mostJobs, jobs);
             motions[m].leastJobs = std::min(motions[m].leastJobs, jobs);

@@ -76,8 +76,10 @@ class CloseViews {
 
   private:
     std::unique_ptr<ReflectionSource> sourceOf(std::string_view method, bool everyFrame);
-    Picture shown(const FrameScene& frame, std::string_view method, ReflectionSource& source, Drawn* told);
-    void drawFrame(const FrameScene& frame, std::string_view method, ReflectionSource& source, Drawn* told);
+    Picture shown(const FrameScene& frame, std::string_view method, ReflectionSource& source, Drawn* told,
+                  ChromeFades* fades = nullptr);
+    void drawFrame(const FrameScene& frame, std::string_view method, ReflectionSource& source, Drawn* told,
+                   ChromeFades* fades = nullptr);
 
     const Scene& scene_;
     const PreparedReflections& prepared_;
