@@ -54,7 +54,7 @@ MirrorRows publishedSearches(const ChromeStage& stage, const ChromeBenchOptions&
 MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& options);
 
 /// How often the four below tell of their progress.
-constexpr std::size_t chromePictureSteps = 12;
+constexpr std::size_t chromePictureSteps = 13;
 
 /// Whole frames by share. Needs a context, as the next two.
 MirrorRows chromeFrames(const ChromeStage& stage, const ChromeBenchOptions& options);

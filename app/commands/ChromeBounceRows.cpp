@@ -69,11 +69,10 @@ MirrorRows chromeBounces(const MirrorWorld& world, const ChromeBenchOptions& opt
             std::make_unique<MirrorStage>(world, options.picture, reflection::CurvedMaps::cube, pass));
         reflection::VirtualMeshOptions mesh;
         mesh.vertices = options.vertex;
-        mesh.vertices.share = 1;
         mesh.vertices.search.thorough = false;
         reflection::ChromeTreeOptions bounces;
         bounces.depth = depth;
-        stages.back()->setChrome(mesh, false, bounces);
+        stages.back()->setChrome(mesh, true, bounces);
     }
     // Maps see each other's last ones: they settle first.
     for (int round = -4; round < rounds; ++round)

@@ -32,6 +32,7 @@ struct Method {
     std::optional<double> share;  ///< of searches; nothing: environment maps alone
     bool published = false;
     bool onGpu = false;
+    bool concave = false;  ///< bowls too, all their images
 };
 
 std::unique_ptr<MirrorStage> stageFor(const MirrorWorld& world, const Method& method,
@@ -44,7 +45,7 @@ std::unique_ptr<MirrorStage> stageFor(const MirrorWorld& world, const Method& me
         mesh.vertices = options.vertex;
         mesh.vertices.share = *method.share;
         if (method.published) mesh.vertices.published = reflection::PublishedOptions{};
-        stage->setChrome(mesh, false);
+        stage->setChrome(mesh, method.concave);
         if (method.onGpu) stage->searchChromeOnGpu();
     }
     return stage;
@@ -150,6 +151,7 @@ MirrorRows chromePictures(const ChromeStage& stage, const ChromeBenchOptions& op
         {options.searchOnGpu ? "chrome, all searched, gpu" : "chrome, all searched", mapFace, true, 1.0,
          false, options.searchOnGpu},
         {"chrome, 9.6 %", mapFace, true, 0.096, false},
+        {"chrome, 9.6 %, bowls too", mapFace, true, 0.096, false, false, true},
         {"chrome, as published", mapFace, true, 1.0, true}};
     constexpr std::size_t rerendered = 2;
     // The same maps, kept and re-rendered, without chrome: what a map costs, and what chrome adds.

@@ -105,7 +105,7 @@ void MirrorStage::setChrome(const reflection::VirtualMeshOptions& options, bool 
     if (my.curved != reflection::CurvedMaps::cube) bounces.depth = 1;
     my.chrome.emplace(my.world, options, concave, bounces);
     for (std::size_t c = 0; c < my.world.curved.size(); ++c)
-        my.renderer.setLeftOut(c, my.chrome->closeTo(c), my.chrome->chromeCloseTo(c));
+        my.renderer.setLeftOut(c, my.chrome->leftToChrome(c), my.chrome->reflectorsLeftToChrome(c));
 }
 
 const reflection::ChromeTree& MirrorStage::chromeTree() const {

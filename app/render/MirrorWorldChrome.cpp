@@ -159,12 +159,12 @@ void MirrorWorldChrome::searchOnGpu() {
     impl_->searchOnGpu = true;
 }
 
-const std::vector<bool>& MirrorWorldChrome::closeTo(std::size_t curved) const {
-    return impl_->chrome[curved].close;
+std::vector<bool> MirrorWorldChrome::leftToChrome(std::size_t curved) const {
+    return impl_->hollow(curved) ? std::vector<bool>() : impl_->chrome[curved].close;
 }
 
-const std::vector<bool>& MirrorWorldChrome::chromeCloseTo(std::size_t curved) const {
-    return impl_->chrome[curved].closeCurved;
+std::vector<bool> MirrorWorldChrome::reflectorsLeftToChrome(std::size_t curved) const {
+    return impl_->hollow(curved) ? std::vector<bool>() : impl_->chrome[curved].closeCurved;
 }
 
 const reflection::ChromeTree& MirrorWorldChrome::tree() const {

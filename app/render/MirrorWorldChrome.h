@@ -47,10 +47,11 @@ class MirrorWorldChrome {
     /// back; `searchMilliseconds` is then what asking for it takes.
     void searchOnGpu();
 
-    /// Which objects a reflector shows as virtual objects; its environment map need not hold them.
-    const std::vector<bool>& closeTo(std::size_t curved) const;
-    /// The same of other reflectors: none at a depth of 1.
-    const std::vector<bool>& chromeCloseTo(std::size_t curved) const;
+    /// Which objects a reflector shows as virtual objects, so that its environment map need not hold them;
+    /// and which other reflectors (none at a depth of 1). Empty where the map should hold all: a hollow
+    /// reflector shows itself, too, and what is seen in that is the map's.
+    std::vector<bool> leftToChrome(std::size_t curved) const;
+    std::vector<bool> reflectorsLeftToChrome(std::size_t curved) const;
     /// Of the last frame.
     const reflection::ChromeTree& tree() const;
 

@@ -79,6 +79,11 @@ struct MirrorWorldChrome::Impl {
     std::optional<reflection::ChromeSearch> search;
     gl::Program searched;  ///< draws what the GPU has searched for
 
+    bool hollow(std::size_t curved) const {
+        for (const Piece& p : chrome[curved].pieces)
+            if (p.piece->bend == reflection::Bend::concave && !p.piece->built.map.empty()) return true;
+        return false;
+    }
     void makeGlObjects();
     void plan(const reflection::EyeView& view, const glm::ivec2& size);
     void makePicture(std::uint32_t node, const ChromeEnvironments& environments, ChromeFrame& frame);

@@ -5,21 +5,19 @@
 #include <unordered_map>
 #include <utility>
 
+#include "reflection/chrome/VirtualTriangles.h"
+
 namespace reflection {
 
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
+using Triangle = VirtualTriangle;
 
-constexpr std::uint32_t straight = ~std::uint32_t{0}, broken = straight - 1;
+constexpr std::uint32_t straight = straightEdge, broken = straight - 1;
 
 /// Length on screen, in tolerances, below which an edge is not looked at: it could bend by more only if it
 /// went four times its length aside and came back.
 constexpr double shortEdge = 0.25;
-
-/// After the last halving: how far from the middle, in edge lengths, an edge's middle may lie. Where an image
-/// runs into the reflector's outline it moves as a root, and the middle lies 0.21 off; where it jumps, 0.5.
-constexpr double torn = 0.35;
 
 /// What a vertex is to the outline of a convex piece. What it hides, and itself, is a convex set: between two
 /// hidden vertices everything is hidden.
@@ -48,53 +46,6 @@ struct Cut {
 /// Edges that run into a crease of a convex body are halved no more often than this.
 constexpr int creaseHalvings = 2;
 
-std::uint64_t keyOf(std::uint32_t a, std::uint32_t b) {
-    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
-}
-
-/// Chord between the directions to two points, which is their angle where that is small.
-double apart(const glm::vec3& a, const glm::vec3& b) {
-    return glm::length(glm::normalize(glm::dvec3(a)) - glm::normalize(glm::dvec3(b)));
-}
-
-/// Angle between a direction and the nearest one of the arc that two points span.
-double angleToArc(const glm::dvec3& towards, const glm::dvec3& a, const glm::dvec3& b) {
-    const glm::dvec3 u = glm::normalize(a), v = glm::normalize(b), up = glm::cross(u, v);
-    double best = std::max(glm::dot(u, towards), glm::dot(v, towards));
-    const double area = glm::dot(up, up);
-    if (area > 1e-20) {
-        const glm::dvec3 flat = towards - glm::dot(towards, up) / area * up;
-        if (glm::dot(glm::cross(u, flat), up) > 0 && glm::dot(glm::cross(flat, v), up) > 0)
-            best = std::max(best, glm::length(flat));
-    }
-    return std::acos(std::clamp(best, -1.0, 1.0));
-}
-
-/// Triangles after their halved edges were cut. `middle[k]`: of the edge from corner k to the next, or
-/// `straight`.
-void cutTriangle(const Triangle& t, const Triangle& middle, std::vector<Triangle>& out) {
-    int halved = 0;
-    for (const std::uint32_t m : middle) halved += m != straight;
-    if (halved == 3) {
-        out.push_back({t[0], middle[0], middle[2]});
-        out.push_back({middle[0], t[1], middle[1]});
-        out.push_back({middle[2], middle[1], t[2]});
-        out.push_back({middle[0], middle[1], middle[2]});
-        return;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
-        if (halved == 1 && middle[k] != straight) {
-            out.push_back({t[k], middle[k], t[last]});
-            out.push_back({middle[k], t[next], t[last]});
-        } else if (halved == 2 && middle[k] == straight) {
-            out.push_back({t[last], middle[last], middle[next]});
-            out.push_back({middle[last], t[k], t[next]});
-            out.push_back({middle[last], t[next], middle[next]});
-        }
-    }
-}
-
 }  // namespace
 
 VirtualMesh::VirtualMesh(std::vector<glm::vec3> points, std::vector<std::uint32_t> indices,
@@ -103,6 +54,8 @@ VirtualMesh::VirtualMesh(std::vector<glm::vec3> points, std::vector<std::uint32_
 
 VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye,
                                   const glm::dmat4& reflectorFromMesh, const VirtualMeshOptions& options) {
+    if (map.bend() == Bend::concave && !options.vertices.published)
+        return updateConcave(map, eye, reflectorFromMesh, options);
     VirtualCounts counts = object.update(map, eye, reflectorFromMesh);
     image.assign(object.vertices().begin(), object.vertices().end());
     added.clear();
@@ -162,7 +115,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
     };
     const auto add = [&](std::uint32_t a, std::uint32_t b, double share, const VirtualVertex& vertex,
                          Side side) {
-        halved[keyOf(a, b)] = static_cast<std::uint32_t>(image.size());
+        halved[edgeKey(a, b)] = static_cast<std::uint32_t>(image.size());
         added.push_back({a, b, static_cast<float>(share)});
         image.push_back(vertex);
         places.push_back(places[a] + share * (places[b] - places[a]));
@@ -190,7 +143,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
                     continue;
                 const bool cut = sides[a] == Side::hidden || sides[b] == Side::hidden;
                 if (!cut) {
-                    const double length = apart(image[a].fromEye, image[b].fromEye);
+                    const double length = apartOf(image[a].fromEye, image[b].fromEye);
                     // Only where the image runs into the part's outline it bends by more.
                     const bool smooth = (image[a].status == ReflectionStatus::found) ==
                                         (image[b].status == ReflectionStatus::found);
@@ -199,7 +152,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
                                                   : shortEdge * options.tolerance;
                     if (length <= least || (lost(a) && lost(b)) || outside(a, b, length)) continue;
                 }
-                if (!halved.try_emplace(keyOf(a, b), straight).second) continue;
+                if (!halved.try_emplace(edgeKey(a, b), straight).second) continue;
                 if (cut) {
                     const bool turned = sides[a] == Side::hidden;
                     cuts.push_back({turned ? b : a, turned ? a : b});
@@ -218,13 +171,13 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
             const double off = atOutline
                                    ? angleToArc(glm::normalize(glm::dvec3(exact)),
                                                 glm::dvec3(image[a].fromEye), glm::dvec3(image[b].fromEye))
-                                   : apart(exact, 0.5f * (image[a].fromEye + image[b].fromEye));
+                                   : apartOf(exact, 0.5f * (image[a].fromEye + image[b].fromEye));
             if (!(off > options.tolerance) && side == Side::seen) continue;
             const bool intoCrease = lost(a) || lost(b);
             if (last || (intoCrease && depth >= creaseHalvings)) {
-                if (intoCrease) halved[keyOf(a, b)] = broken;
-                if (tears && off > torn * apart(image[a].fromEye, image[b].fromEye))
-                    halved[keyOf(a, b)] = broken;
+                if (intoCrease) halved[edgeKey(a, b)] = broken;
+                if (tears && off > tornShare * apartOf(image[a].fromEye, image[b].fromEye))
+                    halved[edgeKey(a, b)] = broken;
                 continue;
             }
             // Between two places on the outline all is hidden, but for their tolerance.
@@ -271,7 +224,7 @@ VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye
             Triangle middle{straight, straight, straight};
             bool whole = true;
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto entry = halved.find(keyOf(t[k], t[(k + 1) % 3]));
+                const auto entry = halved.find(edgeKey(t[k], t[(k + 1) % 3]));
                 if (entry != halved.end()) middle[k] = entry->second;
                 whole = whole && middle[k] == straight;
             }

@@ -44,9 +44,14 @@ class VirtualMesh {
     /// pieces edges with one hidden end are cut where the piece's outline hides them, and what lies behind is
     /// left out: a hidden vertex's own image may be anywhere, behind the eye too, and a triangle drawn
     /// straight to it would cover what it never reaches. Places of such cuts are drawn the tolerance past the
-    /// outline, with the status `hidden`. On concave pieces triangles of which every vertex is hidden are
-    /// left out, and so are those in which the image is still torn after the last halving (neighbouring
-    /// vertices may be seen at different points there).
+    /// outline, with the status `hidden`.
+    ///
+    /// On concave pieces every image of a vertex is a vertex of its own (those after the first are middles of
+    /// an edge from it to itself). Images of neighbouring vertices that are each other's nearest belong
+    /// together; a triangle is drawn once for each image that goes round its corners. Where one ends (two
+    /// meet and vanish, the piece itself stands before it) edges are halved, and what is left after the last
+    /// halving is left out: a strip as wide as a sixty-fourth of an edge. `share` is then that of vertices
+    /// that are searched for everywhere; all others' images are followed from theirs.
     /// Cost: the vertices', a search for each edge that is long on screen and about six for each that is cut.
     VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
                          const VirtualMeshOptions& options);
@@ -60,6 +65,9 @@ class VirtualMesh {
     std::span<const std::uint32_t> indices() const { return drawn; }
 
   private:
+    VirtualCounts updateConcave(const ReflectorMap& map, const glm::dvec3& eye,
+                                const glm::dmat4& reflectorFromMesh, const VirtualMeshOptions& options);
+
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> triangles;
     VirtualObject object;

@@ -170,6 +170,62 @@ TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
         }
 }
 
+TEST(VirtualMesh, ShowsEveryImageInABowlWhereItIs) {
+    const ReflectorMap map =
+        buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 100, 2.0, glm::pi<double>(), true), {0, 0, 0},
+                          Bend::concave)
+            .map;
+    std::vector<glm::vec3> panel;
+    std::vector<std::uint32_t> triangles;
+    for (int j = 0; j <= 8; ++j)
+        for (int i = 0; i <= 8; ++i) panel.push_back({-.6f + .15f * float(i), .3f, -.6f + .15f * float(j)});
+    for (std::uint32_t j = 0; j < 8; ++j)
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            const std::uint32_t a = j * 9 + i;
+            triangles.insert(triangles.end(), {a, a + 1, a + 10, a, a + 10, a + 9});
+        }
+    // Followed from a few places that are searched everywhere, as from all of them.
+    for (const double share : {1.0, 0.1}) {
+        VirtualMeshOptions options;
+        options.vertices.share = share;
+        VirtualMesh mesh(panel, triangles, options);
+        const glm::dvec3 eye(.1, -.5, 1.5);
+        mesh.update(map, eye, glm::dmat4(1), options);
+        std::vector<glm::dvec3> places(panel.begin(), panel.end());
+        for (const MiddleVertex& m : mesh.middles())
+            places.push_back(places[m.a] + double(m.share) * (places[m.b] - places[m.a]));
+        ASSERT_EQ(places.size(), mesh.vertices().size());
+        Scatter random(5);
+        int images = 0, several = 0, shown = 0;
+        for (int k = 0; k < 400; ++k) {
+            const glm::dvec3 vertex(random.between(-.55, .55), .3, random.between(-.55, .55));
+            const std::vector<ReflectionPoint> all = findAllReflectionPoints(map, eye, vertex);
+            several += all.size() > 1;
+            for (const ReflectionPoint& r : all) {
+                ++images;
+                const glm::dvec3 sight = glm::normalize(virtualVertex(r, vertex) - eye);
+                bool covered = false;
+                for (std::size_t t = 0; t + 2 < mesh.indices().size() && !covered; t += 3) {
+                    glm::dmat3 corners, at;
+                    for (int i = 0; i < 3; ++i) {
+                        const std::uint32_t v = mesh.indices()[t + static_cast<std::size_t>(i)];
+                        corners[i] = glm::dvec3(mesh.vertices()[v].fromEye);
+                        at[i] = places[v];
+                    }
+                    const glm::dvec3 w = glm::inverse(corners) * sight;
+                    if (!(std::min({w.x, w.y, w.z}) >= -1e-6 * glm::length(w))) continue;
+                    covered = glm::distance(at * w / (w.x + w.y + w.z), vertex) < 0.01;
+                    if (!covered) continue;
+                    EXPECT_NEAR(glm::length(corners * w / (w.x + w.y + w.z)), r.path, 0.01 * r.path);
+                }
+                shown += covered;
+            }
+        }
+        EXPECT_GT(several, 20) << "else there is nothing to tell apart";
+        EXPECT_GT(shown, 0.98 * images) << "of " << images;
+    }
+}
+
 TEST(VirtualMesh, OutsideItsConeEdgesStayAsTheyAre) {
     const ReflectorMap map =
         buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 60), {0, 0, 0}, Bend::convex).map;
