@@ -11,6 +11,7 @@
 
 #include "app/stability/SeededRandom.h"
 #include "app/stability/Stability.h"
+#include "reflection/chrome/ChromeTree.h"
 #include "reflection/chrome/ReflectionSearch.h"
 #include "reflection/chrome/ReflectorPieces.h"
 #include "reflection/chrome/VirtualMesh.h"
@@ -318,6 +319,67 @@ Row meshes(const Options& options, SeededRandom& random) {
     return row;
 }
 
+/// Chrome that sees chrome: balls of any size that touch, hold each other or share a place, looked at from
+/// anywhere, the eye of a picture among it.
+Row bounces(const Options& options, SeededRandom& random) {
+    Row row{
+        "chrome",
+        "chrome in chrome: touching, one in the other, the same; eyes at a picture's eye, on, in, far off",
+        0,
+        0,
+        0,
+        0,
+        "broken plans",
+        "every node finite, its parent before it, no deeper and no more pictures than asked",
+        ""};
+    for (int i = 0; i < 4 * options.effort() && !options.stop(); ++i) {
+        const double size = random.magnitude(1e-3, 1e3), other = size * random.magnitude(0.05, 20);
+        const auto ball = [&](double radius) {
+            return makeReflector(
+                sheet(16, 32, [radius](double u, double v) { return radius * onBall(u, v); }),
+                {.cellsPerSide = 16});
+        };
+        const Reflector a = ball(size), b = ball(other);
+        const auto pointsOf = [](const Reflector& r) {
+            std::vector<std::vector<SurfacePoint>> points;
+            for (const ReflectorPiece& piece : r.pieces) points.push_back(spreadPoints(piece.mesh, 24));
+            return points;
+        };
+        const auto ofA = pointsOf(a), ofB = pointsOf(b);
+        for (const double apart : {0.0, std::abs(size - other), size + other, 1.5 * (size + other)}) {
+            std::array<ChromeBody, 2> bodies;
+            bodies[0] = {&a, ofA, glm::dmat4(1), glm::dvec3(0), size, 1e4 * (size + other), true};
+            bodies[1] = {&b, ofB, glm::dmat4(1), glm::dvec3(0), other, 1e4 * (size + other), true};
+            bodies[1].centre = apart * direction(random);
+            bodies[1].worldFromPart[3] = glm::dvec4(bodies[1].centre, 1);
+            ChromeTreeOptions how;
+            how.depth = 1 + i % 8;
+            how.mostPictures = 12;
+            how.mostStray = 100;
+            std::vector<glm::dvec3> eyes{glm::dvec3(0), size * direction(random), bodies[1].centre,
+                                         1e6 * size * direction(random),
+                                         3 * (size + other) * direction(random)};
+            for (std::size_t e = 0; e < eyes.size() && e < 8; ++e) {
+                const ChromeTree tree = chromeTree(
+                    perspectiveView(eyes[e], bodies[1].centre, 1, 1, 1e-4 * size), {640, 640}, bodies, how);
+                ++row.tried;
+                bool good = tree.status == ChromeTreeStatus::ok && tree.passes() <= how.mostPictures;
+                for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+                    const ChromeNode& node = tree.nodes[n];
+                    good = good && (node.parent == ChromeNode::none || node.parent < n) &&
+                           static_cast<int>(node.level) <= how.depth &&
+                           (node.look == ChromeLook::picture) == (node.size.x > 0) &&
+                           std::isfinite(node.eye.x + node.eye.y + node.eye.z + node.pixels + node.stray);
+                    if (node.look == ChromeLook::picture && eyes.size() < 8) eyes.push_back(node.eye);
+                }
+                if (!good) fail(row, "sizes " + std::to_string(size) + " and " + std::to_string(other));
+            }
+        }
+    }
+    row.worst = static_cast<double>(row.failures);
+    return row;
+}
+
 }  // namespace
 
 std::vector<Row> tryChrome(const Options& options) {
@@ -330,6 +392,8 @@ std::vector<Row> tryChrome(const Options& options) {
     rows.push_back(scales(options, random));
     options.tell(0.8);
     rows.push_back(meshes(options, random));
+    options.tell(0.9);
+    rows.push_back(bounces(options, random));
     options.tell(1);
     return rows;
 }
