@@ -11,10 +11,20 @@ namespace {
 
 /// Turns after which a ray that skims along crowns counts as having met one.
 constexpr int mostTurns = 32;
+constexpr float farAbove = 64;      ///< metres above all crowns
 constexpr float leastGain = 1e-4f;  ///< cells of a metre: coordinates of 1 km are rounded by half of it
 
 city::Heightfield only(const city::Overhang& hanging, const city::Heightfield& of, float sign) {
     city::Heightfield field(of.width(), of.height(), of.cellSize(), of.origin());
+    // Nothing hangs there: columns far beyond all others instead of none, so that heights are told apart in
+    // steps that the leaping walks can use. They have no top, so nothing counts as met in them.
+    if (sign < 0) {
+        float highest = 0;
+        for (int j = 0; j < of.height(); ++j)
+            for (int i = 0; i < of.width(); ++i)
+                if (hanging.hangs(i, j)) highest = std::max(highest, hanging.top.at(i, j));
+        for (float& z : field.cells()) z = -(highest + farAbove);
+    }
     for (int j = 0; j < of.height(); ++j)
         for (int i = 0; i < of.width(); ++i)
             if (hanging.hangs(i, j)) field.set(i, j, sign * of.at(i, j));
