@@ -44,10 +44,6 @@ struct Values {
     HWY_INLINE void store(Num n) { hn::Store(n.v, Doubles(), at.data()); }
 };
 
-/// Lookups of the first descent, before it is known whether the reflector hides the vertex: what has arrived
-/// by then needs no test, and what has not is mostly hidden.
-constexpr int quickLookups = 7;
-
 /// Cosine between normal and line of sight below which what has arrived is asked all the same: there rounding
 /// tells.
 constexpr double surelyFaces = 1e-3;
@@ -59,14 +55,14 @@ constexpr double surelyFaces = 1e-3;
 std::size_t searchQuickly(const ReflectorMap& map, const glm::dvec3& eye,
                           std::span<const glm::dvec3> vertices, std::span<const glm::dvec3> guesses,
                           std::span<ReflectionPoint> points, std::span<std::uint32_t> rest,
-                          const SearchOptions& options) {
+                          const SearchOptions& options, int lookupsEach) {
     const Doubles tag;
     const std::size_t lanes = hn::Lanes(tag);
     const EyeSide eyeSide(map, eye);
     const Num3 eyes = num3(eye);
     const Stretch stretch(map);
     SearchOptions quick = options;
-    quick.lookups = std::min(options.lookups, quickLookups);
+    quick.lookups = std::min(options.lookups, lookupsEach);
     std::size_t left = 0;
     for (std::size_t first = 0; first < vertices.size(); first += lanes) {
         const std::size_t n = std::min(lanes, vertices.size() - first);
@@ -98,14 +94,14 @@ std::size_t searchQuickly(const ReflectorMap& map, const glm::dvec3& eye,
         lookups.store(descent.lookups);
         for (std::size_t k = 0; k < n; ++k) {
             ReflectionPoint& r = points[first + k];
-            r.lookups = static_cast<std::uint8_t>(lookups.at[k]);
+            r.lookups = static_cast<std::uint8_t>(r.lookups + lookups.at[k]);
+            r.point = at.get(k);
             // The sine is the angle to 1e-21.
             r.residual = std::sqrt(error.at[k]);
             if (!(r.residual <= options.tolerance)) {
                 rest[left++] = static_cast<std::uint32_t>(first + k);
                 continue;
             }
-            r.point = at.get(k);
             r.normal = up.get(k);
             r.path = path.at[k];
             r.status = map.covered(r.point) ? ReflectionStatus::found : ReflectionStatus::unreflected;
@@ -259,6 +255,16 @@ bool finite(const glm::dvec3& p) {
 /// Radians that a point may be off where it is not searched for thoroughly: a pixel in any picture.
 constexpr double nearEnough = 1e-3;
 
+/// Residual, radians, beyond which a vertex that has not arrived is asked at once whether it is hidden.
+constexpr double farOff = 0.3;
+
+/// Lookups of the first two descents, before it is known whether the reflector hides the vertex: what has
+/// arrived by then needs no test. Most arrive in the first, from near by in two.
+constexpr int firstLookups = 4, nextLookups = 6;
+/// Where the part has a rim there is one descent: its steps are the graphics card's, and so is the side of
+/// the rim on which a point within the tolerance of it ends.
+constexpr int onlyLookups = 7;
+
 /// So many vertices are brought to the map's frame at a time.
 constexpr std::size_t block = 256;
 
@@ -291,15 +297,39 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                 for (std::size_t k = 0; k < n; ++k) guessed[k] = map.frame().toMap(guesses[first + k]);
                 from = std::span(guessed).first(n);
             }
-            const std::size_t left = HWY_DYNAMIC_DISPATCH(searchQuickly)(
-                map, mapEye, std::span(moved).first(n), from, out, rest, options);
+            for (ReflectionPoint& r : out) r.lookups = 0;
+            std::size_t left =
+                HWY_DYNAMIC_DISPATCH(searchQuickly)(map, mapEye, std::span(moved).first(n), from, out, rest,
+                                                    options, map.closed() ? firstLookups : onlyLookups);
+            // Those that are on their way go on together, so that packets do not wait for their last vertex;
+            // the others are hidden, most of them.
+            std::array<std::uint32_t, block> going, stayed;
+            std::size_t go = 0, stay = 0;
             for (std::size_t k = 0; k < left; ++k) {
-                others[k] = moved[rest[k]];
-                answers[k].lookups = out[rest[k]].lookups;
+                const ReflectionPoint& r = out[rest[k]];
+                if (map.closed() && r.residual < farOff) {
+                    others[go] = moved[rest[k]];
+                    guessed[go] = r.point;
+                    answers[go].lookups = r.lookups;
+                    going[go++] = rest[k];
+                } else {
+                    stayed[stay++] = rest[k];
+                }
+            }
+            if (go > 0) {
+                left = HWY_DYNAMIC_DISPATCH(searchQuickly)(
+                    map, mapEye, std::span(others).first(go), std::span(guessed).first(go),
+                    std::span(answers).first(go), rest, options, nextLookups);
+                for (std::size_t k = 0; k < go; ++k) out[going[k]] = answers[k];
+                for (std::size_t k = 0; k < left; ++k) stayed[stay++] = going[rest[k]];
+            }
+            for (std::size_t k = 0; k < stay; ++k) {
+                others[k] = moved[stayed[k]];
+                answers[k].lookups = out[stayed[k]].lookups;
             }
             HWY_DYNAMIC_DISPATCH(searchPackets)
-            (map, mapEye, std::span(others).first(left), std::span(answers).first(left), options);
-            for (std::size_t k = 0; k < left; ++k) out[rest[k]] = answers[k];
+            (map, mapEye, std::span(others).first(stay), std::span(answers).first(stay), options);
+            for (std::size_t k = 0; k < stay; ++k) out[stayed[k]] = answers[k];
         }
         for (std::size_t k = 0; k < n; ++k) {
             ReflectionPoint& r = out[k];

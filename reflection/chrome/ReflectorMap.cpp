@@ -58,6 +58,7 @@ ReflectorMap::ReflectorMap(int cellsPerSide, Bend bend, const MapFrame& frame, s
     findRadii();
     byNormal = indexNormals(false);
     if (!whole) byCoveredNormal = indexNormals(true);
+    balls = SurfacePatches(*this);
 }
 
 bool ReflectorMap::coveredAt(const glm::dvec3& direction) const {

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "reflection/chrome/SurfacePatches.h"
+
 namespace reflection {
 
 /// How a piece of a reflector curves, seen from its reflecting side.
@@ -95,8 +97,11 @@ class ReflectorMap {
     std::span<const glm::vec3> coveredNormalTable() const { return byCoveredNormal; }
     static constexpr int normalTableSide = 24;  ///< texels per side of a face of the table
 
+    /// Where reflection points can be; for searches for all of them.
+    const SurfacePatches& patches() const { return balls; }
+
     std::size_t bytes() const {
-        return values.size() * sizeof(Corner) + own.size() +
+        return balls.bytes() + values.size() * sizeof(Corner) + own.size() +
                (byNormal.size() + byCoveredNormal.size()) * sizeof(glm::vec3);
     }
 
@@ -125,6 +130,7 @@ class ReflectorMap {
     std::vector<Corner> values;
     std::vector<std::uint8_t> own;
     std::vector<glm::vec3> byNormal, byCoveredNormal;
+    SurfacePatches balls;
 };
 
 }  // namespace reflection

@@ -110,8 +110,8 @@ struct Descent {
     Num lookups;
 };
 
-/// Halvings in a row after which a convex piece is left: a step to a 1,000th that is still no better runs
-/// into a crease of the closing surface.
+/// Halvings in a row after which a descent ends: a step to a 1,000th that is still no better runs into a
+/// crease of the closing surface or, on a concave piece, into a least error that is none.
 constexpr double mostHalvings = 10;
 
 /// Steps from the given starts until the error is small enough, the steps vanish, or the lookups are used up.
@@ -134,7 +134,7 @@ HWY_INLINE Descent descend(const ReflectorMap& map, const Num3& eye, const Num3&
         result.best = choose(better, next, result.best);
         step = choose(better, next.step, num(0.5) * step);
         halvings = choose(better, num(0), halvings + num(1));
-        if (convex) walking = hn::And(walking, halvings < num(mostHalvings));
+        walking = hn::And(walking, halvings < num(mostHalvings));
         const MD moves = most(size(step.x), most(size(step.y), size(step.z))) > still;
         walking = hn::And(walking, hn::And(moves, result.best.error > enough));
     }

@@ -86,14 +86,27 @@ std::vector<glm::dvec3> startsFor(const ReflectorMap& map, const glm::dvec3& eye
     return starts;
 }
 
+/// Lookups after which a start is given up: from within a patch that holds a point Newton steps need six.
+constexpr int mostLookups = 40;
+
 }  // namespace
 
 std::vector<ReflectionPoint> everyReflectionPoint(const ReflectorMap& map, const glm::dvec3& eye,
                                                   const glm::dvec3& vertex, const SearchOptions& options) {
-    const std::vector<glm::dvec3> starts = startsFor(map, eye, vertex);
+    const bool convex = map.bend() == Bend::convex;
+    std::vector<glm::dvec3> starts;
+    if (convex) {
+        // The graphics card's starts: on which side of a rim a point within the tolerance of it ends is
+        // theirs.
+        starts = startsFor(map, eye, vertex);
+    } else {
+        std::vector<std::uint32_t> patches;
+        map.patches().mayReflect(eye, vertex, patches);
+        for (const std::uint32_t p : patches) starts.emplace_back(map.patches().start(p));
+    }
     std::vector<Candidate> ends(starts.size());
     SearchOptions patient = options;
-    patient.lookups = 4 * options.lookups;
+    patient.lookups = convex ? 4 * options.lookups : std::max(options.lookups, mostLookups);
     descendFromStarts(map, eye, vertex, starts, ends, patient);
     std::vector<ReflectionPoint> found;
     for (const Candidate& c : ends) {

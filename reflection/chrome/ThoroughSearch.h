@@ -24,8 +24,10 @@ void descendFromStarts(const ReflectorMap& map, const glm::dvec3& eye, const glm
 /// map's frame.
 bool entersSurface(const ReflectorMap& map, const glm::dvec3& from, const glm::dvec3& to, glm::dvec3& point);
 
-/// Every distinct reflection point of the vertex that descents from all least errors of a lattice reach, on
-/// the part and on its closing surface, shortest path first; in the map's frame.
+/// Every distinct reflection point of the vertex, on the part and on its closing surface, shortest path
+/// first; in the map's frame. On concave pieces descents start in every patch of the surface that can hold
+/// one (SurfacePatches), so what is missed can only be one of two in the same few cells; on convex ones at
+/// the least errors of a lattice.
 std::vector<ReflectionPoint> everyReflectionPoint(const ReflectorMap& map, const glm::dvec3& eye,
                                                   const glm::dvec3& vertex, const SearchOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "reflection/chrome/BuildReflectorMap.h"
@@ -74,6 +75,41 @@ TEST(ThoroughSearch, FindsAllPointsOfABowl) {
     EXPECT_GT(times[0], 20);
     EXPECT_GT(times[1], 50);
     EXPECT_GT(times[2] + times[3], 10);
+}
+
+TEST(ThoroughSearch, MissesNothingThatDescentsFromEverywhereFind) {
+    // A bowl that is no part of a sphere, where up to five points lie close together.
+    const BuiltReflectorMap built = buildReflectorMap(
+        meshOf(ellipsoid({1, .8, .6}), 100, rim, glm::pi<double>(), true), {0, 0, 0}, Bend::concave);
+    const ReflectorMap& map = built.map;
+    std::vector<glm::dvec3> everywhere;
+    for (int face = 0; face < 6; ++face)
+        for (int row = 0; row < 48; ++row)
+            for (int column = 0; column < 48; ++column)
+                everywhere.push_back(ReflectorMap::cornerPoint(48, face, column, row));
+    std::vector<Candidate> ends(everywhere.size());
+    Scatter random(4);
+    std::size_t points = 0, several = 0, missed = 0;
+    for (int k = 0; k < 60; ++k) {
+        const glm::dvec3 eye = random.direction() * random.between(0.1, 1.5);
+        const glm::dvec3 vertex = random.direction() * random.between(0.1, 1.5);
+        const std::vector<ReflectionPoint> all = everyReflectionPoint(map, eye, vertex, {});
+        descendFromStarts(map, eye, vertex, everywhere, ends, {});
+        std::vector<glm::dvec3> oracle;
+        for (const Candidate& c : ends) {
+            if (!(c.error <= 1e-14)) continue;
+            const auto at = [&](const glm::dvec3& p) { return glm::length(p - c.point) < 1e-3; };
+            if (std::any_of(oracle.begin(), oracle.end(), at)) continue;
+            oracle.push_back(c.point);
+            missed +=
+                std::none_of(all.begin(), all.end(), [&](const ReflectionPoint& r) { return at(r.point); });
+        }
+        points += oracle.size();
+        several += oracle.size() > 1;
+    }
+    EXPECT_GT(points, 60U);
+    EXPECT_GT(several, 20U);
+    EXPECT_EQ(missed, 0U);
 }
 
 TEST(ThoroughSearch, GivesOneStatusToEveryVertexAroundABowl) {
