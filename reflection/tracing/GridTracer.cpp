@@ -80,17 +80,13 @@ GridTracer::GridTracer(const city::Heightfield& field) {
 GridTracer::GridTracer(const city::Heightfield& field, const city::Overhang& hanging) : GridTracer(field) {
     for (int j = 0; j < hanging.top.height() && !hanging_; ++j)
         for (int i = 0; i < hanging.top.width() && !hanging_; ++i)
-            if (hanging.hangs(i, j)) hanging_ = std::make_shared<HangingTracer>(hanging);
+            if (hanging.hangs(i, j)) hanging_ = std::make_shared<HangingTracer>(field, hanging);
 }
 
 TraceResult GridTracer::trace(const city::Ray& ray, float tMax) const {
     // A NaN limit reaches nothing; an infinite one reaches what a float can express.
     const float most = tMax > std::numeric_limits<float>::max() ? std::numeric_limits<float>::max() : tMax;
-    const TraceResult solid = leapWalk(*grid_, ray, most);
-    if (!hanging_ || solid.status == TraceStatus::invalid) return solid;
-    const bool met = solid.status == TraceStatus::hit;
-    const TraceResult hung = hanging_->trace(ray, met ? solid.t : most);
-    return hung.status == TraceStatus::hit && (!met || hung.t < solid.t) ? hung : solid;
+    return hanging_ ? hanging_->trace(ray, most) : leapWalk(*grid_, ray, most);
 }
 
 bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
@@ -105,8 +101,11 @@ bool GridTracer::occluded(glm::vec3 from, glm::vec3 to, float slack) const {
 void GridTracer::traceFan(glm::vec3 origin, std::span<const float> dx, std::span<const float> dy,
                           std::span<const float> dz, std::span<float> t) const {
     const std::size_t count = std::min({dx.size(), dy.size(), dz.size(), t.size()});
-    leapFan(*grid_, origin, dx.first(count), dy.first(count), dz.first(count), t.first(count));
-    if (hanging_) hanging_->lower(origin, dx.first(count), dy.first(count), dz.first(count), t.first(count));
+    const auto first = [count](auto span) { return span.first(count); };
+    if (hanging_)
+        hanging_->traceFan(origin, first(dx), first(dy), first(dz), first(t));
+    else
+        leapFan(*grid_, origin, first(dx), first(dy), first(dz), first(t));
 }
 
 }  // namespace reflection

@@ -62,8 +62,8 @@ class GridTracer {
     /// nearer to 0 than 2^-500 m counts as 0.
     explicit GridTracer(const city::Heightfield& field);
 
-    /// And what hangs with air beneath it (of the same cells or of others): a ray hits whichever it enters
-    /// first. Rules and cost of that: HangingTracer.
+    /// And what hangs with air beneath it, of the same cells: a ray hits whichever it enters first. Rules and
+    /// cost of that: HangingTracer.
     GridTracer(const city::Heightfield& field, const city::Overhang& hanging);
 
     /// Entries with t > tMax count as misses.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "reflection/tracing/GridTracer.h"
@@ -102,6 +103,31 @@ TEST(HangingTracer, agreesWithASlowWalkUnderInAndAboveCrowns) {
         }
     }
     EXPECT_GT(hung, 5000) << "of 32768 rays";
+}
+
+TEST(HangingTracer, endsAtTheLimitUnderCrownsToo) {
+    SeededRandom random(7);
+    const Wood wood(random);
+    const GridTracer tracer(wood.solid, wood.hanging);
+    int cut = 0;
+    for (int n = 0; n < 4000; ++n) {
+        const city::Ray ray{{random.between(-11, 11), random.between(-11, 11), random.between(0.4, 3)},
+                            {random.between(-1, 1), random.between(-1, 1), random.between(-0.2, 0.2)}};
+        const TraceResult all = tracer.trace(ray);
+        if (all.status != TraceStatus::hit || all.t == 0) continue;
+        EXPECT_EQ(tracer.trace(ray, all.t).t, all.t);
+        EXPECT_EQ(tracer.trace(ray, 0.999f * all.t).status, TraceStatus::miss) << all.t;
+        ++cut;
+    }
+    EXPECT_GT(cut, 2000);
+}
+
+TEST(HangingTracer, refusesOtherCells) {
+    const city::Heightfield solid(4, 4, 1, {0, 0}), other(4, 4, 1, {1, 0});
+    city::Overhang hanging{other, other};
+    hanging.underside.set(0, 0, 2);
+    hanging.top.set(0, 0, 3);
+    EXPECT_THROW(GridTracer(solid, hanging), std::invalid_argument);
 }
 
 /// Who stands under a crown sees out below it, and has it overhead.
