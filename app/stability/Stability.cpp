@@ -21,9 +21,10 @@ int Options::effort() const {
 }
 
 std::vector<Campaign> allCampaigns() {
-    return {{"tracer", tryTracer},     {"embree", tryEmbree},   {"maps", tryReferenceMaps},
-            {"mesh", tryMesh},         {"frames", tryFrames},   {"traffic", tryTraffic},
-            {"settings", trySettings}, {"mirrors", tryMirrors}, {"chrome", tryChrome}};
+    return {{"tracer", tryTracer},      {"hanging", tryHanging},   {"embree", tryEmbree},
+            {"maps", tryReferenceMaps}, {"mesh", tryMesh},         {"frames", tryFrames},
+            {"traffic", tryTraffic},    {"settings", trySettings}, {"mirrors", tryMirrors},
+            {"chrome", tryChrome}};
 }
 
 nlohmann::ordered_json toJson(const Row& row) {

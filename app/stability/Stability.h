@@ -49,6 +49,7 @@ struct Campaign {
 };
 
 std::vector<Row> tryTracer(const Options& options);
+std::vector<Row> tryHanging(const Options& options);
 std::vector<Row> tryEmbree(const Options& options);
 std::vector<Row> tryReferenceMaps(const Options& options);
 std::vector<Row> tryMesh(const Options& options);

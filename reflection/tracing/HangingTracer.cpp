@@ -85,6 +85,7 @@ TraceResult HangingTracer::below(const city::Ray& ray, float tMax, const TraceRe
     constexpr double never = std::numeric_limits<double>::infinity();
     glm::ivec2 cell = entered.cell;
     double t = static_cast<double>(entered.t);
+    bool grazes = false;
     while (within(t) && inside(cell)) {
         const double x = leaves(0, cell.x), y = leaves(1, cell.y), end = std::max(std::min(x, y), t);
         if ((marks_[index(cell)] & hangs) != 0) {
@@ -97,15 +98,18 @@ TraceResult HangingTracer::below(const city::Ray& ray, float tMax, const TraceRe
             else if (first > high)
                 enters = last <= high ? std::max((high - o.z) / d.z, t) : never;
             if (within(enters)) return {TraceStatus::hit, static_cast<float>(enters), cell};
-        } else if ((end - t) * fastest > shortestWay * cellSize_) {
+        } else if (!grazes && (end - t) * fastest > shortestWay * cellSize_) {
             const double middle = 0.5 * (t + end);
             const glm::dvec3 from = o + middle * d;
             const double rounding = floatRounding * std::max(std::abs(from.x), std::abs(from.y));
             if (within(middle) && rounding < startRounding * cellSize_) {
                 const TraceResult next = filled_.trace({glm::vec3(from), ray.direction}, limit);
-                if (next.status != TraceStatus::hit || (marks_[index(next.cell)] & hangs) == 0) return solid;
+                if (next.status != TraceStatus::hit) return solid;
                 cell = next.cell;
                 t = middle + static_cast<double>(next.t);
+                // The start was rounded: a ray that grazes a column's top may seem to meet it.
+                grazes = (marks_[index(cell)] & hangs) == 0;
+                if (grazes && cell == solid.cell) return solid;
                 continue;
             }
         }
@@ -115,6 +119,7 @@ TraceResult HangingTracer::below(const city::Ray& ray, float tMax, const TraceRe
         else
             cell.y += d.y > 0 ? 1 : -1;
         t = end;
+        grazes = false;
     }
     return solid;
 }
