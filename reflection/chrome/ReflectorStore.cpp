@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <iterator>
 #include <span>
 #include <sstream>
@@ -117,6 +120,38 @@ bool takeReport(Reader& from, ReflectorMapReport& r) {
     return true;
 }
 
+bool finite(const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// A part of this world's size, in a frame that turns and stretches.
+bool sound(const MapFrame& frame) {
+    constexpr double largest = 1e6, smallest = 1e-9, flattest = 1e-3, off = 1e-6;
+    const glm::dmat3 square = glm::transpose(frame.axes) * frame.axes;
+    for (int i = 0; i < 3; ++i) {
+        if (!(glm::length(square[i] - glm::dmat3(1)[i]) < off)) return false;
+        if (!(frame.stretch[i] >= flattest && frame.stretch[i] <= 1)) return false;
+    }
+    return finite(frame.centre) && glm::length(frame.centre) < largest && frame.scale > smallest &&
+           frame.scale < largest;
+}
+
+/// Unit normals, and a surface in every direction.
+bool sound(int cells, std::span<const ReflectorMap::Corner> corners) {
+    constexpr double off = 1e-3, nearest = 1e-6, farthest = 1e6;
+    for (int face = 0; face < 6; ++face)
+        for (int row = 0; row <= cells; ++row)
+            for (int column = 0; column <= cells; ++column) {
+                const glm::dvec4 c(corners[ReflectorMap::cornerIndex(cells, face, column, row)]);
+                const glm::dvec3 g = ReflectorMap::cornerPoint(cells, face, column, row), m(c);
+                const double reciprocal = c.w * glm::dot(m, g);
+                if (!(std::abs(glm::length(m) - glm::length(g)) < off * glm::length(g)) ||
+                    !(reciprocal > 1 / farthest && reciprocal < 1 / nearest))
+                    return false;
+            }
+    return true;
+}
+
 bool takePiece(Reader& from, ReflectorPiece& piece) {
     std::uint8_t bend = 0, status = 0;
     std::uint32_t cells = 0;
@@ -130,6 +165,8 @@ bool takePiece(Reader& from, ReflectorPiece& piece) {
         return false;
     for (const std::uint32_t index : piece.mesh.indices)
         if (index >= piece.mesh.vertices.size()) return false;
+    for (const city::Vertex& v : piece.mesh.vertices)
+        if (!finite(glm::dvec3(v.position)) || !finite(glm::dvec3(v.normal))) return false;
     piece.bend = static_cast<Bend>(bend);
     piece.built.status = static_cast<ReflectorMapStatus>(status);
     if (cells == 0) return true;
@@ -137,7 +174,9 @@ bool takePiece(Reader& from, ReflectorPiece& piece) {
         !from.take(frame.stretch) || !from.takeAll(corners) || !from.takeAll(covered))
         return false;
     const std::size_t expected = ReflectorMap::cornerCount(static_cast<int>(cells));
-    if (corners.size() != expected || covered.size() != expected) return false;
+    if (corners.size() != expected || covered.size() != expected || !sound(frame) ||
+        !sound(static_cast<int>(cells), corners))
+        return false;
     piece.built.map =
         ReflectorMap(static_cast<int>(cells), piece.bend, frame, std::move(corners), std::move(covered));
     return true;
