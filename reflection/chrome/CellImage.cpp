@@ -36,9 +36,11 @@ CellImage::CellImage(std::span<const glm::vec3> positions, const VirtualOptions&
       nodes(tree.nodes().size()),
       images(tree.nodes().size()),
       wasCut(tree.cells().size(), 0),
-      wasGood(tree.cells().size(), 0) {}
+      wasGood(tree.cells().size(), 0),
+      wasRefined(tree.cells().size(), 0) {}
 
-void CellImage::begin(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh) {
+std::size_t CellImage::begin(const ReflectorMap& map, const glm::dvec3& eye,
+                             const glm::dmat4& reflectorFromMesh) {
     ++update;
     interpolated = false;
     const double reach = map.empty() ? 0
@@ -51,29 +53,46 @@ void CellImage::begin(const ReflectorMap& map, const glm::dvec3& eye, const glm:
     scene.convex = map.bend() == Bend::convex;
     // Images bend about as the reflector's outline does, as in VirtualMesh.
     scene.unbent = static_cast<float>(settings.cellTolerance * outline);
+    scene.outline = static_cast<float>(outline);
     scene.widest = static_cast<float>(widestCell * widestCell * outline * outline);
     smooth.clear();
     checked.clear();
     exact.clear();
     exactGuesses.clear();
     next.clear();
-    if (tree.cells().empty()) return;
+    waiting.clear();
+    if (tree.cells().empty()) return 0;
     // Cells that were cut the last time are cut again without being looked at, but for every 16th.
     next.push_back(0);
-    for (std::size_t k = 0; k < next.size();) {
+    openRemembered(0, true);
+    return *charge(next, SIZE_MAX);
+}
+
+void CellImage::openRemembered(std::size_t k, bool judgeAnew) {
+    while (k < next.size()) {
         const CellTree::Cell& cell = tree.cells()[next[k]];
         std::uint8_t& cut = wasCut[next[k]];
-        if (!settings.remember || (cut != 0 && (next[k] + update) % rejudged == 0)) cut = 0;
+        if (!settings.remember || (judgeAnew && cut != 0 && (next[k] + update) % rejudged == 0)) cut = 0;
         if (cut == 0 || cell.count == 0) {
             ++k;
             continue;
         }
+        wasRefined[next[k]] = update;
         next[k] = cell.children;
         for (std::uint32_t c = 1; c < cell.count; ++c) next.push_back(cell.children + c);
     }
 }
 
-bool CellImage::ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualCounts& counts) {
+std::size_t CellImage::forget() {
+    if (tree.cells().empty()) return 0;
+    std::fill(wasCut.begin(), wasCut.end(), std::uint8_t{0});
+    for (Node& n : nodes) n.charged = 0;
+    next.assign(1, 0);
+    return *charge(next, SIZE_MAX);
+}
+
+bool CellImage::ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualCounts& counts,
+                    std::size_t& left) {
     firstAnswer = batch.places.size();
     open.swap(next);
     next.clear();
@@ -91,11 +110,14 @@ bool CellImage::ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualC
         const CellTree::Cell& cell = tree.cells()[s.cell];
         batch.ask(scene.place(position(cell.probe)), guessIn(cell, cell.probe));
     }
-    if (open.empty() && askedChecks.empty() && !interpolated) {
+    if (open.empty() && askedChecks.empty() && waiting.empty() && !interpolated) {
         interpolated = true;
         doubtful.clear();
         interpolateCells(tree, images, smooth, image, doubtful);
         counts.atOutlines += doubtful.size();
+        // Of those that are left the cosine's sign tells; it is wrong by a hair's breadth on screen.
+        doubtful.resize(std::min(doubtful.size(), left));
+        left -= doubtful.size();
         exact.insert(exact.end(), doubtful.begin(), doubtful.end());
         exactGuesses.resize(exact.size(), glm::dvec3(NAN));
     }
@@ -106,7 +128,7 @@ bool CellImage::ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualC
         for (std::size_t k = 0; k < askedExact.size(); ++k)
             batch.ask(scene.place(position(askedExact[k])), exactGuesses[k]);
     }
-    return batch.places.size() > firstAnswer || !open.empty();
+    return batch.places.size() > firstAnswer || !open.empty() || !waiting.empty();
 }
 
 void CellImage::take(SearchBatch& batch, std::span<VirtualVertex> image, VirtualCounts& counts) {
@@ -130,10 +152,11 @@ void CellImage::take(SearchBatch& batch, std::span<VirtualVertex> image, Virtual
     counts.inBentCells += askedChecks.size() + askedExact.size();
     for (const SmoothCell& s : askedChecks) {
         counts.add(*r);
-        if (confirms(s, *r))
-            smooth.push_back(s);
+        const float off = offBy(s, *r);
+        if (off > 0)
+            waiting.push_back({off, s, false});
         else
-            fail(s.cell);
+            smooth.push_back(s);
         ++r, ++place;
     }
     for (const std::uint32_t v : askedExact) {
@@ -161,33 +184,95 @@ void CellImage::takePaths(const SearchBatch& batch) {
     for (const std::uint32_t id : open) {
         const Judgement j = judge(id);
         if (j.kind == Judgement::Kind::torn || j.kind == Judgement::Kind::bent) {
-            fail(id);
+            waiting.push_back({j.error, j.cell, false});
             continue;
         }
         const bool again = !settings.remember || wasGood[id] + 1 != update || (id + update) % rechecked == 0;
         wasGood[id] = update;
-        (j.kind == Judgement::Kind::check && again ? checked : smooth).push_back(j.cell);
+        if (j.kind == Judgement::Kind::check && again)
+            waiting.push_back({j.error, j.cell, true});
+        else
+            smooth.push_back(j.cell);
     }
 }
 
-void CellImage::fail(std::uint32_t id) {
+bool CellImage::wasIn(const PendingCell& p) const {
+    return settings.remember && !p.check && wasRefined[p.cell.cell] + 1 == update;
+}
+
+std::optional<std::size_t> CellImage::refine(const PendingCell& p, std::size_t left) {
+    if (left == 0) return std::nullopt;
+    const std::uint32_t id = p.cell.cell;
+    if (p.check) {
+        checked.push_back(p.cell);
+        return 1;
+    }
     const CellTree::Cell& cell = tree.cells()[id];
-    wasGood[id] = 0;
+    std::size_t searches = cell.vertices();
     if (cell.count == 0 || cell.vertices() <= 2 * newNodes(cell)) {
+        if (searches > left) return std::nullopt;
         for (std::uint32_t v = cell.first; v < cell.last; ++v) {
             exact.push_back(v);
             exactGuesses.push_back(guessIn(cell, v));
         }
-        return;
+    } else {
+        const std::size_t first = next.size();
+        for (std::uint32_t c = 0; c < cell.count; ++c) next.push_back(cell.children + c);
+        // Bent as before: what it was cut into need not be found anew.
+        if (wasIn(p)) openRemembered(first, false);
+        const std::optional<std::size_t> charged = charge(std::span(next).subspan(first), left);
+        if (!charged) {
+            next.resize(first);
+            return std::nullopt;
+        }
+        searches = *charged;
+        wasCut[id] = 1;
     }
-    wasCut[id] = 1;
-    for (std::uint32_t c = 0; c < cell.count; ++c) next.push_back(cell.children + c);
+    wasGood[id] = 0;
+    wasRefined[id] = update;
+    return searches;
+}
+
+void CellImage::giveUp(const PendingCell& p) {
+    // So that it is looked at again.
+    wasGood[p.cell.cell] = 0;
+    smooth.push_back(p.cell);
+}
+
+void CellImage::keepPending(std::span<const std::uint8_t> kept) {
+    std::size_t to = 0;
+    for (std::size_t k = 0; k < waiting.size(); ++k)
+        if (kept[k] != 0) waiting[to++] = waiting[k];
+    waiting.resize(to);
+}
+
+std::optional<std::size_t> CellImage::charge(std::span<const std::uint32_t> cells, std::size_t left) {
+    justCharged.clear();
+    for (const std::uint32_t id : cells)
+        for (const std::uint32_t n : tree.cells()[id].nodes)
+            if (nodes[n].charged != update) {
+                nodes[n].charged = update;
+                justCharged.push_back(n);
+            }
+    if (justCharged.size() <= left) return justCharged.size();
+    for (const std::uint32_t n : justCharged) nodes[n].charged = 0;
+    return std::nullopt;
+}
+
+float CellImage::extentOf(const CellTree::Cell& cell) const {
+    float widest = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::vec3 a(images[cell.nodes[i]].image), b(images[cell.nodes[7 - i]].image);
+        const float apart = glm::length(glm::normalize(a) - glm::normalize(b));
+        if (!(apart <= widest)) widest = apart;
+    }
+    return widest <= 2 * scene.outline ? widest : 2 * scene.outline;
 }
 
 std::size_t CellImage::newNodes(const CellTree::Cell& cell) const {
     std::size_t n = 0;
     for (std::uint32_t c = cell.children; c < cell.children + cell.count; ++c)
-        for (const std::uint32_t node : tree.cells()[c].nodes) n += nodes[node].known != update;
+        for (const std::uint32_t node : tree.cells()[c].nodes) n += nodes[node].charged != update;
     // Nodes that children share are counted once for each: about half are.
     return n / 2;
 }
@@ -230,18 +315,18 @@ CellImage::Judgement CellImage::judge(std::uint32_t id) const {
         j.cell.straight = true;
         j.kind = Kind::smooth;
         if (hidden == 8 && scene.convex) return j;
-        float chord = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec3 a(images[n[i]].image), b(images[n[7 - i]].image);
-            const glm::vec3 d = glm::normalize(a) - glm::normalize(b);
-            chord = std::max(chord, glm::dot(d, d));
-        }
+        const float extent = extentOf(cell), chord = extent * extent;
+        j.error = leftOut * extent;
         j.kind = chord <= scene.unbent ? Kind::smooth : (chord <= scene.widest ? Kind::check : Kind::bent);
         return j;
     }
     const bool mixed = hidden > 0;
+    // Torn, and if it stays: seen as if any corner is. What hides the others is drawn in front.
+    j.cell.straight = true;
+    j.error = extentOf(cell);
     if (mixed ? !scene.convex || found + hidden < 8 : found < 8) return j;
     if (turn != 8 && turn != -8) return j;
+    j.cell.straight = false;
     j.cell.status = mixed ? ReflectionStatus::invalid : ReflectionStatus::found;
     const glm::vec3& side = tree.side(cell.level);
     float worst[3] = {0, 0, 0}, cosines = 0, widest = 0;
@@ -263,30 +348,32 @@ CellImage::Judgement CellImage::judge(std::uint32_t id) const {
             cosines = std::max(cosines, std::abs(r.w));
         }
     }
-    const float error = leftOut * (std::sqrt(worst[0]) + std::sqrt(worst[1]) + std::sqrt(worst[2]));
+    j.error = leftOut * (std::sqrt(worst[0]) + std::sqrt(worst[1]) + std::sqrt(worst[2]));
     j.cell.doubt = 3 * leftOut * cosines + leastDoubt;
     // Written so that what is not a number is bent.
-    if (!(widest <= scene.widest) || !(error <= static_cast<float>(settings.cellTolerance)))
+    if (!(widest <= scene.widest) || !(j.error <= static_cast<float>(settings.cellTolerance))) {
         j.kind = Kind::bent;
-    else
+        if (!(widest <= scene.widest) || !(j.error >= 0)) j.error = leftOut * extentOf(cell);
+    } else
         j.kind = widest > scene.unbent ? Kind::check : Kind::smooth;
     return j;
 }
 
-bool CellImage::confirms(const SmoothCell& s, const ReflectionPoint& r) const {
+float CellImage::offBy(const SmoothCell& s, const ReflectionPoint& r) const {
     const CellTree::Cell& cell = tree.cells()[s.cell];
     const glm::vec4 expected = interpolateIn(tree, images, cell, cell.probe);
-    if (s.straight) return r.status != ReflectionStatus::found;
+    if (s.straight) return r.status != ReflectionStatus::found ? 0 : extentOf(cell);
     ReflectionStatus status = s.status;
     if (status == ReflectionStatus::invalid)
         status = std::abs(expected.w) <= s.doubt
                      ? r.status
                      : (expected.w > 0 ? ReflectionStatus::found : ReflectionStatus::hidden);
-    if (status != r.status) return false;
-    if (status != ReflectionStatus::found) return true;
+    if (status != r.status) return extentOf(cell);
+    if (status != ReflectionStatus::found) return 0;
     const glm::vec3 exactly(virtualVertex(r, scene.place(position(cell.probe))) - scene.eye);
-    return glm::length(glm::normalize(glm::vec3(expected)) - glm::normalize(exactly)) <=
-           static_cast<float>(settings.cellTolerance);
+    const float off = glm::length(glm::normalize(glm::vec3(expected)) - glm::normalize(exactly));
+    if (off <= static_cast<float>(settings.cellTolerance)) return 0;
+    return off <= 2 * scene.outline ? off : 2 * scene.outline;
 }
 
 void CellImage::continueHidden(SearchBatch& batch) {

@@ -2,6 +2,7 @@
 // time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/chrome/CellInterpolation.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -69,11 +70,23 @@ HWY_INLINE void addCorner(Four& sum, const PathImage& node, const Axis& x, const
     sum.add(hn::Mul(w, farZ ? z.slope1 : z.slope0), node.by[2]);
 }
 
+/// Has memory that is about to be used brought into the cache: what the last update left there is gone by the
+/// next, and cells and vertices are in no order that the processor foresees.
+template <class T>
+void fetchSoon(const T* first, std::size_t count) {
+    constexpr std::size_t line = 64;
+    const char* at = reinterpret_cast<const char*>(first);
+    for (std::size_t k = 0; k < count * sizeof(T); k += line) hwy::Prefetch(at + k);
+}
+
 void interpolateLanes(const CellTree& tree, const PathImage* atNodes, std::span<const SmoothCell> cells,
-                      VirtualVertex* image, std::vector<std::uint32_t>& doubtful) {
+                      std::span<VirtualVertex> image, std::vector<std::uint32_t>& doubtful) {
     const Floats tag;
     const std::size_t lanes = hn::Lanes(tag);
     const std::uint32_t* order = tree.order().data();
+    fetchSoon(order, tree.order().size());
+    for (int a = 0; a < 3; ++a) fetchSoon(tree.along(a), tree.order().size());
+    fetchSoon(image.data(), image.size());
     HWY_ALIGN std::array<float, 4 * CellTree::padding> out;
     for (const SmoothCell& s : cells) {
         const CellTree::Cell& cell = tree.cells()[s.cell];
@@ -111,7 +124,7 @@ void interpolateLanes(const CellTree& tree, const PathImage* atNodes, std::span<
                 hn::StoreInterleaved4(sum.x, sum.y, sum.z, status, tag, out.data());
             }
             for (std::uint32_t lane = 0; lane < count; ++lane)
-                std::memcpy(static_cast<void*>(image + order[k + lane]), out.data() + 4 * lane,
+                std::memcpy(static_cast<void*>(&image[order[k + lane]]), out.data() + 4 * lane,
                             sizeof(VirtualVertex));
         }
     }
@@ -129,7 +142,7 @@ HWY_EXPORT(interpolateLanes);
 void interpolateCells(const CellTree& tree, std::span<const PathImage> atNodes,
                       std::span<const SmoothCell> cells, std::span<VirtualVertex> image,
                       std::vector<std::uint32_t>& doubtful) {
-    HWY_DYNAMIC_DISPATCH(interpolateLanes)(tree, atNodes.data(), cells, image.data(), doubtful);
+    HWY_DYNAMIC_DISPATCH(interpolateLanes)(tree, atNodes.data(), cells, image, doubtful);
 }
 
 glm::vec4 interpolateIn(const CellTree& tree, std::span<const PathImage> atNodes, const CellTree::Cell& cell,

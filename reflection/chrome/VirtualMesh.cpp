@@ -43,6 +43,11 @@ struct Cut {
     }
 };
 
+VirtualOptions toTheTolerance(VirtualOptions options) {
+    options.beyondShare = true;
+    return options;
+}
+
 /// Edges that run into a crease of a convex body are halved no more often than this.
 constexpr int creaseHalvings = 2;
 
@@ -50,7 +55,9 @@ constexpr int creaseHalvings = 2;
 
 VirtualMesh::VirtualMesh(std::vector<glm::vec3> points, std::vector<std::uint32_t> indices,
                          const VirtualMeshOptions& options)
-    : positions(std::move(points)), triangles(std::move(indices)), object(positions, options.vertices) {}
+    : positions(std::move(points)),
+      triangles(std::move(indices)),
+      object(positions, toTheTolerance(options.vertices)) {}
 
 VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye,
                                   const glm::dmat4& reflectorFromMesh, const VirtualMeshOptions& options) {

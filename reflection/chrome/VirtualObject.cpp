@@ -21,6 +21,18 @@ glm::vec3 imageOf(const ReflectionPoint& r, const glm::dvec3& eye, const glm::dv
 /// Below this there is less to interpolate between the eight corners of one cell than to search for.
 constexpr std::size_t fewestVertices = 16;
 
+/// Of what is left of a budget a round spends half, and no less than this: cells that come of larger ones
+/// have their turn before all is spent.
+constexpr std::size_t fewestInRound = 256;
+
+/// Of a budget one part in so many is kept for what was refined in the last update, too: its cells are judged
+/// anew now and then, which takes searches for corners besides.
+constexpr std::size_t keptShare = 8;
+
+/// How much farther off another cell must be to be refined in place of one that was in the last update, so
+/// that cells at the end of a budget do not come and go.
+constexpr float stays = 1.5f;
+
 }  // namespace
 
 glm::dvec3 reflectionPointOf(const VirtualVertex& seen, const glm::dvec3& eye, const glm::dvec3& vertex) {
@@ -83,9 +95,9 @@ void VirtualObject::onGrid(const ReflectorMap& map, const glm::dvec3& eye,
     }
 }
 
-bool VirtualObject::ask(SearchBatch& batch, bool first, VirtualCounts& counts) {
+bool VirtualObject::ask(SearchBatch& batch, bool first, VirtualCounts& counts, std::size_t& left) {
     if (grid) return false;
-    if (cells) return cells->ask(batch, image, counts);
+    if (cells) return cells->ask(batch, image, counts, left);
     firstAnswer = batch.places.size();
     if (!first) return false;
     const bool known = settings.remember && last.size() == points.size();
@@ -110,8 +122,54 @@ void VirtualObject::take(SearchBatch& batch, VirtualCounts& counts) {
     }
 }
 
+void VirtualObject::spend(std::span<Placed> objects, std::size_t reserve, std::size_t& left) {
+    struct Candidate {
+        float urgency;
+        std::size_t object, at;
+        bool wasIn;
+    };
+    std::vector<Candidate> candidates;
+    std::vector<std::vector<std::uint8_t>> kept(objects.size());
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        if (!objects[o].object->cells) continue;
+        const CellImage& image = *objects[o].object->cells;
+        kept[o].assign(image.pending().size(), 0);
+        for (std::size_t k = 0; k < image.pending().size(); ++k) {
+            const PendingCell& cell = image.pending()[k];
+            const bool wasIn = image.wasIn(cell);
+            candidates.push_back({wasIn ? stays * cell.error : cell.error, o, k, wasIn});
+        }
+    }
+    // Of equal ones in their order, so that the result is one.
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.urgency > b.urgency; });
+    const std::size_t most = std::max(left / 2, fewestInRound);
+    std::size_t spent = 0;
+    for (const Candidate& c : candidates) {
+        if (spent >= most) {
+            kept[c.object][c.at] = 1;
+            continue;
+        }
+        CellImage& image = *objects[c.object].object->cells;
+        const PendingCell cell = image.pending()[c.at];
+        const std::optional<std::size_t> searches =
+            image.refine(cell, c.wasIn ? left : left - std::min(left, reserve));
+        if (!searches) {
+            image.giveUp(cell);
+            continue;
+        }
+        spent += *searches;
+        left -= *searches;
+    }
+    for (std::size_t o = 0; o < objects.size(); ++o)
+        if (objects[o].object->cells) objects[o].object->cells->keepPending(kept[o]);
+}
+
 void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects) {
     VirtualOptions how;
+    double budget = 0;
+    std::size_t begun = 0;
+    bool remembers = false, bounded = true;
     for (Placed& p : objects) {
         VirtualObject& o = *p.object;
         p.counts = {};
@@ -120,9 +178,20 @@ void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::
         o.eyeAt = eye;
         o.waits = true;
         if (o.grid) o.onGrid(map, eye, p.reflectorFromMesh, p.counts);
-        if (o.cells) o.cells->begin(map, eye, p.reflectorFromMesh);
+        if (o.cells) budget += o.settings.share * static_cast<double>(o.points.size());
+        bounded = bounded && !o.settings.beyondShare;
         how = o.settings;
+        remembers = remembers || o.settings.remember;
     }
+    constexpr std::size_t unbounded = SIZE_MAX / 2;
+    const std::size_t most = bounded ? static_cast<std::size_t>(std::max(budget, 0.0)) : unbounded;
+    for (Placed& p : objects) {
+        if (!p.object->cells) continue;
+        std::size_t searches = p.object->cells->begin(map, eye, p.reflectorFromMesh);
+        if (begun + searches > most) searches = p.object->cells->forget();
+        begun += searches;
+    }
+    std::size_t left = most - std::min(most, begun);
     SearchBatch batch;
     for (bool first = true, any = true; any; first = false) {
         batch.places.clear();
@@ -131,7 +200,7 @@ void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::
         batch.pathFrom.clear();
         any = false;
         for (Placed& p : objects) {
-            p.object->waits = p.object->waits && p.object->ask(batch, first, p.counts);
+            p.object->waits = p.object->waits && p.object->ask(batch, first, p.counts, left);
             any = any || p.object->waits;
         }
         batch.answers.resize(batch.places.size());
@@ -142,6 +211,7 @@ void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::
         perturbPaths(map, eye, glm::dmat3(1), batch.pathPlaces, batch.pathFrom, batch.paths);
         for (Placed& p : objects)
             if (p.object->waits && p.object->cells) p.object->cells->takePaths(batch);
+        spend(objects, remembers ? most / keptShare : 0, left);
     }
     for (Placed& p : objects)
         for (const std::uint32_t k : p.object->broken) p.object->image[k] = {};

@@ -23,8 +23,8 @@ class VirtualObject {
     /// Positions in the mesh's frame, metres; those that are not finite become invalid virtual vertices.
     VirtualObject(std::vector<glm::vec3> positions, const VirtualOptions& options);
 
-    /// Moves the image. `reflectorFromMesh`: rigid; eye in the reflector's frame. Cost: searches for the
-    /// share, 3 ns for every other vertex.
+    /// Moves the image. `reflectorFromMesh`: rigid; eye in the reflector's frame. Cost: searches for at
+    /// most the share (VirtualOptions), 3 ns for every other vertex.
     VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh);
 
     /// One of several objects near a reflector, and how its update went.
@@ -33,14 +33,18 @@ class VirtualObject {
         glm::dmat4 reflectorFromMesh{1};
         VirtualCounts counts = {};
     };
-    /// The same for several at a time: searches are answered together, in full packets.
+    /// The same for several at a time: searches are answered together, in full packets, and their shares are
+    /// one budget, spent where the image is farthest off.
     static void update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects);
 
     std::span<const VirtualVertex> vertices() const { return image; }
 
   private:
     /// Adds searches to the batch; false: there are none (any more).
-    bool ask(SearchBatch& batch, bool first, VirtualCounts& counts);
+    bool ask(SearchBatch& batch, bool first, VirtualCounts& counts, std::size_t& left);
+    /// Spends what is left of the budget on pending cells, or gives them up. `reserve`: left for those that
+    /// were refined in the last update.
+    static void spend(std::span<Placed> objects, std::size_t reserve, std::size_t& left);
     void take(SearchBatch& batch, VirtualCounts& counts);
     void onGrid(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
                 VirtualCounts& counts);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "reflection/chrome/BuildReflectorMap.h"
@@ -131,6 +132,69 @@ TEST(VirtualObject, SeveralTogetherAreAsEachAlone) {
         EXPECT_LT(pixelsApart(alone.vertices()[k].fromEye, b.vertices()[k].fromEye), 1e-3);
         EXPECT_LT(pixelsApart(a.vertices()[k].fromEye, c.vertices()[k].fromEye), 1.0);
     }
+}
+
+TEST(VirtualObject, SearchesNoMoreThanItsShareAndIsFartherOffTheSmallerThatIs) {
+    Table table;
+    // A wall across the outline and one close to the mirror, where few searches are too few.
+    const std::vector<glm::vec3> wall = positionsOf(meshOf(roundedBox({.6, .02, .4}, 4), 40));
+    const std::vector<glm::dmat4> places{table.at({.1, .4, .1}), table.at({.1, -.25, 0})};
+    std::vector<VirtualObject> all(places.size(), VirtualObject(wall, {.share = 1}));
+    std::vector<double> worst;
+    for (const double share : {.002, .01, .02, .041, .055, .096, .143, .5, .99}) {
+        std::vector<VirtualObject> some(places.size(), VirtualObject(wall, {.share = share}));
+        const double most =
+            share * static_cast<double>(places.size() * wall.size()) + 8.0 * double(places.size());
+        std::size_t lost = 0;
+        double here = 0;
+        // Moving, so that what is remembered is spent from the same budget.
+        for (int step = 0; step < 20; ++step) {
+            table.eye = glm::dvec3(.3, -.9, .4) + double(step % 10) * glm::dvec3(8e-3, 2e-3, 1e-3);
+            std::vector<VirtualObject::Placed> placed;
+            for (std::size_t k = 0; k < places.size(); ++k) placed.push_back({&some[k], places[k], {}});
+            VirtualObject::update(table.map, table.eye, placed);
+            std::size_t searched = 0;
+            for (const VirtualObject::Placed& p : placed) searched += p.counts.searched;
+            EXPECT_LE(static_cast<double>(searched), most) << share << ' ' << step;
+            if (step != 0) continue;
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                all[k].update(table.map, table.eye, places[k]);
+                here = std::max(here, worstApart(all[k], some[k], lost));
+            }
+        }
+        for (const VirtualObject& o : some)
+            for (const VirtualVertex& v : o.vertices())
+                ASSERT_TRUE(std::isfinite(v.fromEye.x + v.fromEye.y + v.fromEye.z)) << share;
+        // Shares that are enough end at the tolerance, all alike.
+        EXPECT_LE(here, worst.empty() ? INFINITY : std::max(worst.back(), 1.0)) << share;
+        worst.push_back(here);
+        EXPECT_TRUE(lost == 0 || share < .096) << share;
+    }
+    EXPECT_GT(worst.front(), 10.0);
+    EXPECT_LT(worst.back(), 1.0);
+}
+
+TEST(VirtualObject, CellsAtTheEndOfItsBudgetDoNotComeAndGo) {
+    Table table;
+    const std::vector<glm::vec3> wall = positionsOf(meshOf(roundedBox({.6, .02, .4}, 4), 40));
+    const glm::dmat4 close = table.at({.1, .4, .1});
+    VirtualObject some(wall, {.share = 0.041});
+    some.update(table.map, table.eye, close);
+    std::vector<VirtualVertex> before(some.vertices().begin(), some.vertices().end());
+    double worst = 0;
+    for (int step = 0; step < 200; ++step) {
+        table.eye += glm::dvec3(2e-4, 1e-4, 5e-5);
+        some.update(table.map, table.eye, close);
+        double here = 0;
+        for (std::size_t k = 0; k < before.size(); ++k)
+            if (before[k].status == ReflectionStatus::found &&
+                some.vertices()[k].status == ReflectionStatus::found)
+                here = std::max(here, pixelsApart(before[k].fromEye, some.vertices()[k].fromEye));
+        worst = std::max(worst, here);
+        before.assign(some.vertices().begin(), some.vertices().end());
+    }
+    // Cells that came and went would jump by what they are off: tens of pixels here.
+    EXPECT_LT(worst, 2.0);
 }
 
 TEST(VirtualObject, WhatItRemembersIsAGuessAndNoMore) {
