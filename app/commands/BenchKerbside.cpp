@@ -73,7 +73,7 @@ int benchKerbside(const Options& asked) {
     if (!stage.reflections.complete) return reportBench(options, results, table);
     const Scene& scene = stage.scene;
     CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality,
-                     {.share = options.chromeShare});
+                     {.share = options.chromeShare, .bounces = options.chromeBounces});
     const vehicles::Traffic traffic = startTraffic(scene, options.seed, options.cars.front());
     const FrameScene frame = assembleFrame(scene.city, traffic, scene.lighting, {}, scene.staged);
     const std::vector<KerbsideShot> shots =

@@ -170,9 +170,26 @@ int benchSquare(const Options& options) {
     vehicles::Traffic traffic = busyTraffic(scene, options.seed, options.cars.front(), lookedAhead);
     {
         CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality,
-                         {.share = options.chromeShare});
+                         {.share = options.chromeShare, .bounces = options.chromeBounces});
         const FrameScene frame =
             assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {}, stage.scene.staged);
+        for (const PairShot& shot : pairShots(scene.city, options.resolution)) {
+            if (interrupted()) break;
+            FrameScene pair = frame;
+            pair.views = {shot.view};
+            bringBeside(pair, shot);
+            const auto twice = [&](const TracedPicture&, std::size_t i) {
+                return metTwice(scene.city, shot, i);
+            };
+            measureCloseUp(
+                options, views,
+                {shot.name, "square", pair, methods, twice, {{"chrome_bounces", options.chromeBounces}}},
+                results, table);
+            measureChromeCost(
+                options, stage, views.close(), shot.name, shot.view, pair,
+                static_cast<std::uint32_t>(pair.vehicles.size() - scene.city.reflectors.size()) + shot.sphere,
+                results, table);
+        }
         for (const SquareShot& shot : shots) {
             if (interrupted()) break;
             measureShot(options, views, shot, frame, results, table);

@@ -46,10 +46,11 @@ void measureCloseUp(const Options& options, CloseViews& views, const CloseUp& wh
             const ChromeCounts& c = drawn.counts;
             const ChromePlan& plan = drawn.plan;
             spdlog::info(
-                "{}: {} jobs ({} open, {} too small, {} left out), {} meshes, {} vertices, {} searched, {} "
+                "{}: {} jobs ({} open, {} too small, {} left out), {} pictures of {} texels in them, {} "
+                "meshes, {} vertices, {} searched, {} "
                 "triangles, {:.1f} ms ({:.1f} searching)",
-                what.name, c.jobs, plan.open, plan.tooSmall, plan.leftOut, c.meshes, c.vertices, c.searched,
-                c.triangles, c.milliseconds, c.searchMilliseconds);
+                what.name, c.jobs, plan.open, plan.tooSmall, plan.leftOut, c.pictures, c.pictureTexels,
+                c.meshes, c.vertices, c.searched, c.triangles, c.milliseconds, c.searchMilliseconds);
         }
         const std::string file = fileName(what, drawn.method);
         writePng(drawn.picture, options.out / file);

@@ -31,10 +31,10 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       gpuMapBytes_(options.gpuMapBytes()),
       resolution_(options.resolution),
       rendererName_(std::move(renderer)),
-      settings_{options.method,  options.mem,         options.quality,    options.cars.front(),
-                options.hour,    options.budgetMs,    options.error,      options.fixedQuality,
-                options.mirrors, options.mirrorDepth, options.mirrorMaps, options.mirrorFade,
-                options.chrome,  options.chromeShare, options.weather},
+      settings_{options.method,  options.mem,         options.quality,       options.cars.front(),
+                options.hour,    options.budgetMs,    options.error,         options.fixedQuality,
+                options.mirrors, options.mirrorDepth, options.mirrorMaps,    options.mirrorFade,
+                options.chrome,  options.chromeShare, options.chromeBounces, options.weather},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
       waitForChrome_(options.offscreen || options.fixedQuality),
@@ -284,6 +284,8 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
     }
     ChromeDrawing chromeDrawing;
     chromeDrawing.share = settings_.chromeShare;
+    chromeDrawing.bounces = settings_.chromeBounces;
+    chromeDrawing.wait = waitForChrome_;
     renderer_->drawView(view, reflections_, framebuffer, planar, {&chrome, 0, chromeDrawing});
     stats.frameMs = timer_.end();
     stats.drawn = renderer_->counters();

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/commands/OptionChecks.h"
+#include "app/frame/ChromeDrawing.h"
 
 namespace app {
 
@@ -170,6 +171,14 @@ void addChrome(CLI::App& parser, Options& o) {
         ->type_name("SHARE")
         ->capture_default_str()
         ->check(between(0.001, 1, ""));
+    parser
+        .add_option("--chrome-bounces", o.chromeBounces,
+                    "chrome parts in a row that show what is close to them where it is, 1 to 4; 1: chrome "
+                    "seen in the chrome of another mirrors its vehicle's map alone. More take time only "
+                    "where such chrome is large enough")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(wholeBetween(1, mostChromeBounces));
 }
 
 /// What the command line said and `Options` has no place for.

@@ -62,6 +62,7 @@ struct Options {
     std::uint32_t mirrorMaps = 8;  ///< reflections a frame at most
     double mirrorFade = 0;         ///< metres; 0: mirrors do not fade
     bool chrome = true;            ///< chrome shows close things itself
+    int chromeBounces = 1;         ///< chrome parts in a row that show what is close
     double chromeShare = 0.096;    ///< of vertices that are searched for in it
     Weather weather = Weather::dry;
     std::uint32_t samples = 64;  ///< mirror rays a pixel
@@ -110,7 +111,7 @@ enum OptionGroup : unsigned {
     saveOption = 1u << 23,     ///< --save
     bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
     searchOption = 1u << 25,   ///< --search --part --chrome-search
-    chromeOptions = 1u << 26,  ///< --chrome --chrome-share
+    chromeOptions = 1u << 26,  ///< --chrome --chrome-share --chrome-bounces
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

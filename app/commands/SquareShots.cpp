@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "app/frame/StandingReflectors.h"
 
@@ -15,6 +17,8 @@ namespace {
 constexpr double eyeHeight = 1.7;   // metres
 constexpr double farAway = 12;      // metres
 constexpr double fieldOfView = 50;  // degrees
+constexpr double lens = 30;         // degrees, of a look at what one shows of another
+constexpr double beside = 3;        // metres between two such
 constexpr double nearby = 30;       // metres within which vehicles are seen in a reflector
 
 /// From a place towards the nearest lane's middle line: unit, level.
@@ -74,6 +78,66 @@ std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 reso
     const glm::dvec3 middle = sum / static_cast<double>(city.reflectors.size());
     shots.push_back({"square", look(middle, towardsLane(city, middle), farAway), std::nullopt});
     return shots;
+}
+
+std::vector<PairShot> pairShots(const city::CityModel& city, glm::ivec2 resolution) {
+    std::vector<PairShot> shots;
+    const auto chrome = [](const city::StandingReflector& r) {
+        return r.stuff == city::StandingReflector::Stuff::chrome;
+    };
+    for (std::uint32_t i = 0; i < city.reflectors.size(); ++i)
+        for (std::uint32_t j = 0; j < city.reflectors.size(); ++j) {
+            const city::StandingReflector &sphere = city.reflectors[i], &other = city.reflectors[j];
+            if (i == j || !chrome(sphere) || !chrome(other) ||
+                sphere.shape != city::StandingReflector::Shape::sphere)
+                continue;
+            const glm::dvec3 middle(sphere.centre());
+            const glm::dvec3 lane = towardsLane(city, middle);
+            const glm::dvec3 towards = glm::cross(lane, glm::dvec3(0, 0, 1));
+            glm::dvec3 foot = glm::dvec3(sphere.foot) + beside * towards;
+            foot.z = groundBelow(city, foot);
+            // Seen from the lane's side, it is met halfway between the two directions.
+            const glm::dvec3 eye(glm::dvec2(middle + beside * lane), eyeHeight);
+            const glm::dvec3 at =
+                middle + static_cast<double>(sphere.radius) * glm::normalize(lane + towards);
+            shots.push_back({other.name + " beside the " + sphere.name,
+                             lookAt(eye, at, glm::radians(lens), resolution), i, j, foot});
+        }
+    return shots;
+}
+
+void bringBeside(FrameScene& frame, const PairShot& shot) {
+    for (vehicles::VehiclePose& pose : frame.vehicles)
+        if (pose.id == firstStandingId + shot.other) pose.position = shot.foot;
+}
+
+bool metTwice(const city::CityModel& city, const PairShot& shot, std::size_t pixel) {
+    const View& view = shot.view;
+    const auto x = static_cast<int>(pixel) % view.size.x, y = static_cast<int>(pixel) / view.size.x;
+    const glm::dvec4 p = glm::inverse(glm::dmat4(view.clipFromView * view.viewFromWorld)) *
+                         glm::dvec4((x + 0.5) / view.size.x * 2 - 1, 1 - (y + 0.5) / view.size.y * 2, 0.5, 1);
+    const glm::dvec3 d = glm::normalize(glm::dvec3(p) / p.w);
+    const city::StandingReflector &sphere = city.reflectors[shot.sphere],
+                                  &other = city.reflectors[shot.other];
+    // Along a ray to a ball, or, with its height left out, to a cylinder.
+    const auto reach = [](const glm::dvec3& from, const glm::dvec3& to,
+                          double radius) -> std::optional<double> {
+        const double a = glm::dot(to, to), b = glm::dot(from, to), c = glm::dot(from, from) - radius * radius;
+        if (!(b < 0) || !(b * b > a * c)) return {};
+        return (-b - std::sqrt(b * b - a * c)) / a;
+    };
+    const glm::dvec3 centre(sphere.centre());
+    const std::optional<double> first = reach(view.eye - centre, d, sphere.radius);
+    if (!first) return false;
+    const glm::dvec3 at = view.eye + *first * d, n = glm::normalize(at - centre);
+    const glm::dvec3 r = d - 2.0 * glm::dot(d, n) * n;
+    if (other.shape == city::StandingReflector::Shape::sphere)
+        return reach(at - shot.foot - glm::dvec3(0, 0, other.radius), r, other.radius).has_value();
+    const glm::dvec3 off = at - shot.foot, flat(1, 1, 0);
+    const std::optional<double> second = reach(off * flat, r * flat, other.radius);
+    if (!second) return false;
+    const double height = off.z + *second * r.z;
+    return height > 0 && height < other.height;
 }
 
 void parkBeside(FrameScene& frame, const Scene& scene, std::uint32_t reflector, double apart) {

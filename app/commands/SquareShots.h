@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,25 @@ struct SquareShot {
 /// Each reflector from near by (it fills half of the picture) and from 12 m, then all that stand together.
 /// Empty for a city without any.
 std::vector<SquareShot> squareShots(const city::CityModel& city, glm::ivec2 resolution);
+
+/// A chrome sphere in which another chrome reflector is seen, brought beside it.
+struct PairShot {
+    std::string name;
+    View view;
+    std::uint32_t sphere = 0, other = 0;  ///< indices into CityModel::reflectors
+    glm::dvec3 foot{0};                   ///< where the other one is brought
+};
+
+/// Each sphere from near by, with another one 3 m from it (where they stand they are out of each other's
+/// reach), both of chrome.
+std::vector<PairShot> pairShots(const city::CityModel& city, glm::ivec2 resolution);
+
+/// Brings the other one there.
+void bringBeside(FrameScene& frame, const PairShot& shot);
+
+/// Whether a pixel (rows run downwards) shows the other one within the sphere, by what they are: a ball, an
+/// upright cylinder.
+bool metTwice(const city::CityModel& city, const PairShot& shot, std::size_t pixel);
 
 /// One of the frame's cars (whichever comes first; a frame without any stays as it is) parked with its flank
 /// so many metres from a reflector's surface, to the right of who looks at it in a near shot.

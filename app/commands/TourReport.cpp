@@ -61,6 +61,7 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
     stretch->chromeMeshes += chrome.meshes;
     stretch->chromeSearched += chrome.searched;
     stretch->chromeDrawn += chrome.drawn;
+    stretch->chromePictures += chrome.pictures;
     stretch->chromeMs.push_back(chrome.milliseconds);
     raise(stretch->chromeReflectorBytes, stats.chromeBytes);
     raise(stretch->chromeTextureBytes, stats.drawn.chromeTextureBytes);
@@ -120,6 +121,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
         };
         row["chrome_jobs_per_frame"] = perFrame(stretch.chromeJobs);
         row["chrome_jobs_drawn_per_frame"] = perFrame(stretch.chromeDrawn);
+        row["chrome_pictures_per_frame"] = perFrame(stretch.chromePictures);
         row["chrome_reflector_bytes"] = stretch.chromeReflectorBytes;
         row["chrome_meshes_per_frame"] = perFrame(stretch.chromeMeshes);
         row["chrome_searched_per_frame"] = perFrame(stretch.chromeSearched);

@@ -33,8 +33,8 @@ class TourReport {
         std::uint64_t mapsUpdated = 0;
         std::uint64_t localMapBytes = 0, referenceMapBytes = 0, referenceMapGpuBytes = 0;  ///< the most
         double bytesPerTexel = 0;
-        std::uint64_t chromeJobs = 0, chromeDrawn = 0, chromeMeshes = 0, chromeSearched = 0,
-                      chromeTextureBytes = 0, chromeReflectorBytes = 0;
+        std::uint64_t chromeJobs = 0, chromeDrawn = 0, chromePictures = 0, chromeMeshes = 0,
+                      chromeSearched = 0, chromeTextureBytes = 0, chromeReflectorBytes = 0;
         std::vector<double> chromeMs;
         std::vector<double> positions, predictedMs, errors;  ///< of governed frames
         double last = 0;

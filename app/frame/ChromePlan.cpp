@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -52,6 +53,14 @@ double distanceTo(const vehicles::VehiclePose& pose, const vehicles::VehicleMode
     return glm::length(glm::max(glm::abs(local) - body.half, glm::dvec3(0)));
 }
 
+/// Metres from a part to the middle of its vehicle's map, which is made around the model's.
+double offItsMap(const ChromeJob& job, const vehicles::VehiclePose& pose,
+                 const vehicles::VehicleModel& model) {
+    const glm::dvec3 own =
+        (glm::dvec3(job.worldFromPart[3]) - pose.position) * glm::dmat3(worldFromVehicle(pose));
+    return std::max(glm::length(own - glm::dvec3(0, 0, model.reflectionCentre * model.height)), job.radius);
+}
+
 /// A part on a side of its vehicle's box is not seen from beyond the plane of that side.
 bool behindItsVehicle(const glm::dvec3& part, double radius, const glm::dvec3& eye, const Body& body) {
     for (const int axis : {0, 1}) {
@@ -64,6 +73,45 @@ bool behindItsVehicle(const glm::dvec3& part, double radius, const glm::dvec3& e
 }
 
 }  // namespace
+
+ChromeJob chromePartAt(std::span<const vehicles::VehiclePose> poses,
+                       std::span<const vehicles::VehicleModel> models, const ChromePart& part,
+                       std::uint32_t vehicle, std::uint32_t number, std::uint32_t wheel, double radii) {
+    const vehicles::VehiclePose& pose = poses[vehicle];
+    const vehicles::VehicleModel& model = models[pose.model];
+    const glm::dmat3 turn(worldFromVehicle(pose));
+    glm::dvec3 own(part.centre);
+    glm::dmat3 vehicleFromPart(1);
+    if (wheel != ChromeJob::noWheel) {
+        vehicleFromPart = glm::dmat3(vehicleFromWheel(model.wheels[wheel], pose));
+        own = glm::dvec3(model.wheels[wheel].centre) + vehicleFromPart * own;
+    }
+    ChromeJob job;
+    job.name = {0, pose.id, number, wheel};
+    job.vehicle = vehicle;
+    job.part = number;
+    job.wheel = wheel;
+    job.radius = static_cast<double>(part.radius);
+    job.worldFromPart = rigid(turn * vehicleFromPart, pose.position + turn * own);
+    const double narrow = 0.5 * static_cast<double>(part.width);
+    job.reach = std::max(radii * narrow + job.radius - narrow, mapRadii * offItsMap(job, pose, model));
+    return job;
+}
+
+double closeTo(ChromeJob& job, std::span<const vehicles::VehiclePose> poses,
+               std::span<const vehicles::VehicleModel> models) {
+    double nearest = std::numeric_limits<double>::infinity();
+    job.close.clear();
+    for (std::uint32_t i = 0; i < poses.size(); ++i) {
+        const vehicles::VehiclePose& other = poses[i];
+        if (i == job.vehicle || other.model >= models.size()) continue;
+        const double apart = distanceTo(other, models[other.model], glm::dvec3(job.worldFromPart[3]));
+        if (apart >= job.reach) continue;
+        job.close.push_back(i);
+        nearest = std::min(nearest, std::max(apart, job.radius));
+    }
+    return nearest;
+}
 
 reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,
                                    const glm::vec3& centre, float radius) {
@@ -134,22 +182,12 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
             ++plan.open;
             return;
         }
-        glm::dmat3 turn(worldFromVehicle(pose));
-        glm::dvec3 own(part.centre);
-        glm::dmat3 vehicleFromPart(1);
-        if (wheel != ChromeJob::noWheel) {
-            vehicleFromPart = glm::dmat3(vehicleFromWheel(model.wheels[wheel], pose));
-            own = glm::dvec3(model.wheels[wheel].centre) + vehicleFromPart * own;
-        }
-        ChromeJob job;
-        job.name = {viewIndex, pose.id, p, wheel};
+        ChromeJob job = chromePartAt(scene.vehicles, models, part, index, p, wheel, options.closeRadii);
+        job.name.view = viewIndex;
         job.view = viewIndex;
-        job.vehicle = index;
-        job.part = p;
-        job.wheel = wheel;
-        job.radius = static_cast<double>(part.radius);
-        const glm::dvec3 origin = pose.position + turn * own;
-        job.worldFromPart = rigid(turn * vehicleFromPart, origin);
+        const glm::dmat3 turn(worldFromVehicle(pose));
+        const glm::dvec3 origin(job.worldFromPart[3]);
+        const glm::dvec3 own = (origin - pose.position) * turn;
 
         const glm::mat4 clip = view.clipFromView * view.viewFromWorld;
         const glm::dvec3 towards = origin - view.eye;
@@ -162,21 +200,10 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
         const double distance = std::max(glm::length(towards), job.radius);
         const double perRadian = 0.5 * view.size.y * std::abs(static_cast<double>(view.clipFromView[1][1]));
         job.pixels = static_cast<double>(part.width) / distance * perRadian;
-        // The map is made around the model's middle. What stands has the ground below it, a vehicle's part
-        // its own vehicle, which the map does not show.
-        const double off =
-            std::max(glm::length(own - glm::dvec3(0, 0, model.reflectionCentre * model.height)), job.radius);
-        const double narrow = 0.5 * static_cast<double>(part.width);
-        job.reach = std::max(options.closeRadii * narrow + job.radius - narrow, mapRadii * off);
+        // What stands has the ground below it, a vehicle's part its own vehicle, which the map does not show.
+        const double off = offItsMap(job, pose, model);
         double nearest = stands(pose) ? std::max(origin.z - pose.position.z, job.radius) : job.radius;
-        for (std::uint32_t i = 0; i < scene.vehicles.size(); ++i) {
-            const vehicles::VehiclePose& other = scene.vehicles[i];
-            if (i == index || other.model >= models.size()) continue;
-            const double apart = distanceTo(other, models[other.model], origin);
-            if (apart >= job.reach) continue;
-            job.close.push_back(i);
-            nearest = std::min(nearest, std::max(apart, job.radius));
-        }
+        nearest = std::min(nearest, closeTo(job, scene.vehicles, models));
         const double shift = job.pixels * off / (std::numbers::pi * nearest);
         const double share =
             nearest >= job.reach ? 0 : rise(job.pixels, options.leastPixels) * rise(shift, options.shift);

@@ -106,6 +106,16 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
                       std::span<const vehicles::VehicleModel> models, const ChromeParts& parts,
                       const ChromePlanOptions& options, const ChromeFades* before = nullptr);
 
+/// A part where it is, with its reach: a job of view 0 without what depends on an eye. `number`: of the part,
+/// in its model. `radii`: ChromePlanOptions::closeRadii.
+ChromeJob chromePartAt(std::span<const vehicles::VehiclePose> poses,
+                       std::span<const vehicles::VehicleModel> models, const ChromePart& part,
+                       std::uint32_t vehicle, std::uint32_t number, std::uint32_t wheel, double radii);
+/// Lists the other vehicles within the job's reach. Metres to the nearest, no less than its radius; infinite
+/// where there is none.
+double closeTo(ChromeJob& job, std::span<const vehicles::VehiclePose> poses,
+               std::span<const vehicles::VehicleModel> models);
+
 /// The pixels of an image of this size in which a ball may be seen, relative to the eye; all where the eye is
 /// close to it, none where it is behind or outside.
 reflection::PixelRect pixelsOfBall(const glm::mat4& clipFromRelative, const glm::ivec2& size,

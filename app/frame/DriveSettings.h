@@ -23,6 +23,7 @@ struct DriveSettings {
     double mirrorFade = 0;         ///< metres behind a mirror on which what it shows fades to 1/e; 0: not
     bool chrome = true;            ///< chrome shows close things where they truly appear
     double chromeShare = 0.096;    ///< of close vehicles' vertices, searched for themselves
+    int chromeBounces = 1;         ///< chrome parts in a row that show close things
     Weather weather = Weather::dry;  ///< wet streets need `mirrors`
 
     /// Whether details follow from a budget or an error instead of `quality`.

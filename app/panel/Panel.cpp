@@ -252,6 +252,8 @@ void Panel::Impl::drawChrome(const PanelNews& news, DriveSettings& settings) {
     ImGui::SliderFloat("searched", &share, 0.01f, 1, "%.3f",
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     if (ImGui::IsItemEdited()) settings.chromeShare = static_cast<double>(share);
+    ImGui::SliderInt("bounces", &settings.chromeBounces, 1, mostChromeBounces, "%d",
+                     ImGuiSliderFlags_AlwaysClamp);
     if (!ImGui::BeginTable("chrome", 2, ImGuiTableFlags_SizingStretchProp)) return;
     const ChromeCounts& c = news.drawn.chrome;
     row("parts of vehicles in view", "%.0f", news.chromeParts);
@@ -259,6 +261,8 @@ void Panel::Impl::drawChrome(const PanelNews& news, DriveSettings& settings) {
     row("    drawn anew", "%.0f", c.drawn);
     row("  left out for want of room", "%.0f", news.chromeLeftOut);
     row("  whose reflectors are being made", "%.0f", news.chromeMaking);
+    row("pictures of chrome seen in them", "%.0f", c.pictures);
+    row("    drawn anew", "%.0f", c.picturesDrawn);
     row("meshes in them", "%.0f", c.meshes);
     row("  left out: hidden, far, too small", "%.0f", c.leftOut);
     row("  triangles", "%.0f", static_cast<double>(c.triangles));

@@ -5,20 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "app/render/ChromeObjects.h"
+#include "app/render/CityChromeImpl.h"
 #include "app/render/NodeView.h"
-#include "reflection/gl/ChromeLayer.h"
-#include "reflection/gl/Program.h"
-#include "reflection/gl/Texture.h"
 
 namespace app {
-
-namespace gl = reflection::gl;
 
 namespace {
 
@@ -32,84 +25,14 @@ bool contains(const std::vector<reflection::LocalMapSlot>& slots, const reflecti
     });
 }
 
-enum class Drawing : std::uint8_t { solid, cutout, plain, map, parallax, count };
-
 }  // namespace
 
-struct CityChrome::Impl {
-    /// From where, and in which light.
-    struct Seen {
-        glm::dvec3 eye{0};
-        glm::mat4 clip{0};
-        glm::ivec2 size{0};
-        Lighting lighting = {};
-        bool operator==(const Seen&) const = default;
-    };
-    /// What is drawn of a piece, and how: where none of it differs from the frame before, its pixels stay.
-    struct Layer {
-        std::array<std::uint32_t, 4> name{};  ///< vehicle, part, wheel, piece
-        glm::dmat4 worldFromPart{1};
-        float share = 0;
-        reflection::PixelRect pixels;
-        struct Thing {
-            const ChromeObject* object = nullptr;
-            glm::dmat4 worldFromMesh{1};
-            Drawing drawing = Drawing::solid;
-            glm::vec4 paint{0};
-            reflection::LocalMapSlot slot;
-            bool operator==(const Thing& b) const {
-                return object == b.object && worldFromMesh == b.worldFromMesh && drawing == b.drawing &&
-                       paint == b.paint && slot.sizeClass == b.slot.sizeClass && slot.layer == b.slot.layer;
-            }
-        };
-        std::vector<Thing> things;
-        bool operator==(const Layer& b) const {
-            return name == b.name && worldFromPart == b.worldFromPart && share == b.share &&
-                   pixels == b.pixels && things == b.things;
-        }
-    };
-    struct PieceMesh {
-        gl::Buffer vertices, indices;
-        gl::VertexArray array;
-        GLsizei count = 0;
-        city::Aabb box;
-    };
+CityChrome::Impl::Impl(const CloseScene& closeScene, std::shared_ptr<Programs> shared)
+    : objects(closeScene), scene(closeScene), programs(std::move(shared)) {}
+CityChrome::Impl::~Impl() = default;
 
-    explicit Impl(const CloseScene& closeScene) : objects(closeScene) {}
-
-    static glm::mat4 clipFromPart(const ChromeJob& job, const PassView& pass) {
-        glm::dmat4 relativeFromPart = job.worldFromPart;
-        relativeFromPart[3] -= glm::dvec4(pass.eye, 0);
-        return pass.clipFromRelative * glm::mat4(relativeFromPart);
-    }
-    void makeGlObjects();
-    void allocate(glm::ivec2 size);
-    const PieceMesh& pieceMesh(const reflection::ReflectorPiece& piece);
-    Layer layerOf(const ChromeShown& shown, std::uint32_t piece, const PassView& pass,
-                  const Surroundings& around);
-    /// Which of these must be drawn anew. Clears their pixels, and those of what is there no more.
-    std::vector<bool> outdated(std::span<const ChromeShown> shown, std::span<const Layer> layers,
-                               const Seen& seenAs, const Surroundings& around);
-    void drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
-                   const glm::mat3& worldFromPart, const glm::vec4& closeAround, const glm::dvec3& eye,
-                   const Surroundings& around);
-
-    ChromeObjects objects;
-    std::vector<Layer> before;
-    Seen seenBefore;
-    std::optional<std::vector<reflection::LocalMapSlot>> skipped;  ///< maps that changed meanwhile
-    std::map<const reflection::ReflectorPiece*, PieceMesh> pieces;
-
-    std::array<gl::Program, static_cast<std::size_t>(Drawing::count)> programs;
-    gl::Program part;
-    std::optional<gl::ChromeLayer> layer;
-    gl::Sampler mapSampler;
-    gl::Texture light, depth;
-    gl::Framebuffer target;
-    glm::ivec2 size{0}, drawnSize{0};
-};
-
-CityChrome::CityChrome(const CloseScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+CityChrome::CityChrome(const CloseScene& scene) : impl_(std::make_unique<Impl>(scene, nullptr)) {}
+CityChrome::CityChrome(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 CityChrome::~CityChrome() = default;
 
 std::uint32_t CityChrome::light() const {
@@ -119,19 +42,24 @@ std::uint32_t CityChrome::depth() const {
     return impl_->depth.name();
 }
 std::size_t CityChrome::bytes() const {
-    return (impl_->layer ? impl_->layer->bytes() : 0) +
-           static_cast<std::size_t>(impl_->size.x) * static_cast<std::size_t>(impl_->size.y) * 12;
+    std::size_t bytes =
+        (impl_->layer ? impl_->layer->bytes() : 0) + (impl_->bodies ? impl_->bodies->bytes() : 0) +
+        static_cast<std::size_t>(impl_->size.x) * static_cast<std::size_t>(impl_->size.y) * 12;
+    for (const auto& [name, picture] : impl_->pictures) bytes += picture->chrome->bytes();
+    return bytes;
 }
 
 void CityChrome::Impl::makeGlObjects() {
     if (layer) return;
     layer.emplace();
     mapSampler = gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
-    part = gl::Program::fromFiles({"chrome_part.vert", "chrome_part.frag"});
+    if (programs) return;
+    programs = std::make_shared<Programs>();
+    programs->part = gl::Program::fromFiles({"chrome_part.vert", "chrome_part.frag"});
     const auto make = [&](Drawing drawing, std::vector<std::string> defines) {
         defines.emplace_back("VIRTUAL");
         const bool city = drawing == Drawing::solid || drawing == Drawing::cutout;
-        programs[static_cast<std::size_t>(drawing)] =
+        programs->things[static_cast<std::size_t>(drawing)] =
             city ? gl::Program::fromFiles({"city.vert", "city.frag"}, defines)
                  : gl::Program::fromFiles({"vehicle.vert", "vehicle.frag"}, defines);
     };
@@ -155,6 +83,8 @@ void CityChrome::Impl::allocate(glm::ivec2 wanted) {
     target.attach(GL_COLOR_ATTACHMENT0, light.name()).attach(GL_DEPTH_ATTACHMENT, depth.name());
     target.requireComplete("what chrome shows of close things");
     constexpr float far = 0;
+    constexpr std::array<float, 4> nothing{};
+    glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, nothing.data());
     glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &far);
     before.clear();
 }
@@ -219,7 +149,8 @@ std::vector<bool> CityChrome::Impl::outdated(std::span<const ChromeShown> shown,
         const auto was = std::ranges::find_if(before, [&](const Layer& b) { return b.name == l.name; });
         anew[i] = anew[i] || was == before.end() || !(*was == l) ||
                   std::ranges::any_of(shown[i].objects, [](const auto* o) { return o->changed; }) ||
-                  std::ranges::any_of(l.things, [&](const auto& t) { return renewed(t.slot); });
+                  std::ranges::any_of(l.things, [&](const auto& t) { return renewed(t.slot); }) ||
+                  std::ranges::any_of(l.pictures, [](const auto* p) { return p->changed; });
         if (anew[i]) cleared.push_back(l.pixels);
     }
     for (const Layer& b : before) {
@@ -242,17 +173,20 @@ std::vector<bool> CityChrome::Impl::outdated(std::span<const ChromeShown> shown,
         i = 0;
     }
     constexpr float far = 0;
+    constexpr std::array<float, 4> nothing{};
     glEnable(GL_SCISSOR_TEST);
     for (const reflection::PixelRect& c : cleared) {
         if (c.empty()) continue;
         glScissor(c.low.x, c.low.y, c.size().x, c.size().y);
         glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &far);
+        if (!alone) glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, nothing.data());
     }
     return anew;
 }
 
 void CityChrome::skip(const std::vector<reflection::LocalMapSlot>* renewed) {
     Impl& my = *impl_;
+    for (const auto& [name, picture] : my.pictures) picture->chrome->skip(renewed);
     if (renewed == nullptr || !my.skipped) {
         my.skipped.reset();
         return;
@@ -278,6 +212,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         const bool sameJob = i > 0 && shown[i].job == shown[i - 1].job;
         layers.push_back(my.layerOf(shown[i], sameJob ? layers.back().name[3] + 1 : 0, pass, around));
     }
+    my.drawPictures(plan, view, pass, shown, layers, materials, around, options, counts);
 
     setDrawState();
     materials.bind();
@@ -291,20 +226,21 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         const ChromeJob& job = *shown[i].job;
         const Impl::PieceMesh& mesh = my.pieceMesh(*shown[i].piece);
         const glm::mat4 clipFromPart = Impl::clipFromPart(job, pass);
-        my.part.set("clipFromPart", clipFromPart);
-        my.part.set("share", job.share);
+        my.programs->part.set("clipFromPart", clipFromPart);
+        my.programs->part.set("share", job.share);
+        const glm::dmat3 turn(job.worldFromPart);
+        const glm::vec3 middle(glm::dvec3(job.worldFromPart[3]) - pass.eye);
+        const glm::mat4 clipFromVirtual = pass.clipFromRelative * glm::mat4(glm::dmat4(turn));
+        if (!l.pictures.empty()) my.drawBodies(l, clipFromVirtual);
         // Only the piece's own pixels are worth shading.
         my.layer->begin(size, l.pixels);
         my.layer->beginMask();
         glEnable(GL_CULL_FACE);
-        my.part.use();
+        my.programs->part.use();
         mesh.array.bind();
         glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
         my.layer->endMask();
         glDisable(GL_CULL_FACE);
-        const glm::dmat3 turn(job.worldFromPart);
-        const glm::vec3 middle(glm::dvec3(job.worldFromPart[3]) - pass.eye);
-        const glm::mat4 clipFromVirtual = pass.clipFromRelative * glm::mat4(glm::dmat4(turn));
         for (std::size_t k = 0; k < l.things.size(); ++k) {
             ChromeObject& o = *shown[i].objects[k];
             if (o.stale) o.drawn->upload(*o.mesh, o.source->values);
@@ -314,7 +250,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         }
         glBindFramebuffer(GL_FRAMEBUFFER, my.target.name());
         glEnable(GL_CULL_FACE);
-        my.part.use();
+        my.programs->part.use();
         glBindTextureUnit(5, my.layer->colour());
         mesh.array.bind();
         glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
@@ -330,7 +266,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
 void CityChrome::Impl::drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
                                  const glm::mat3& worldFromPart, const glm::vec4& closeAround,
                                  const glm::dvec3& eye, const Surroundings& around) {
-    const gl::Program& program = programs[static_cast<std::size_t>(thing.drawing)];
+    const gl::Program& program = programs->things[static_cast<std::size_t>(thing.drawing)];
     glm::dmat4 relativeFromMesh = thing.worldFromMesh;
     relativeFromMesh[3] -= glm::dvec4(eye, 0);
     program.set("clipFromVirtual", clipFromVirtual);
@@ -340,6 +276,11 @@ void CityChrome::Impl::drawThing(const Layer::Thing& thing, const glm::mat4& cli
     if (thing.drawing != Drawing::solid && thing.drawing != Drawing::cutout) {
         program.set("worldFromReflector", worldFromPart);
         program.set("paint", thing.paint);
+        program.set("bounced", thing.bounced ? 1 : 0);
+        if (thing.bounced) {
+            glBindTextureUnit(5, bodies->colour());
+            glBindTextureUnit(6, bodies->depth());
+        }
         if (thing.drawing != Drawing::plain) {
             const auto sizeClass = static_cast<std::size_t>(thing.slot.sizeClass);
             glm::vec4 map(0, 0, 0, thing.slot.layer);

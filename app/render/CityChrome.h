@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -34,6 +35,9 @@ class CityChrome {
         /// Of these, the maps that changed since the call before; null: any may have.
         const std::vector<reflection::LocalMapSlot>* renewed = nullptr;
         Lighting lighting = {};
+        /// Makes the uniform block Frame hold another eye: for what chrome that is seen in chrome shows.
+        /// Empty: such chrome mirrors its vehicle's map alone.
+        std::function<void(const PassView&)> setFrame = {};
     };
     /// The jobs of one of the plan's views, drawn `size` pixels large. What looks as in the call before stays
     /// as it is. The uniform block Frame must hold the view. Leaves another framebuffer bound, and
@@ -52,6 +56,7 @@ class CityChrome {
 
   private:
     struct Impl;
+    explicit CityChrome(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -141,7 +141,8 @@ void SceneRenderer::Impl::drawChrome(const PassView& pass, const VehicleReflecti
     counters.chrome =
         cityChrome->draw(*close.plan, close.view, pass, viewTarget.drawn(), cityPass.materials(),
                          {poses, &reflections.textures, reflections.slots,
-                          reflections.renewed ? &*reflections.renewed : nullptr, lighting},
+                          reflections.renewed ? &*reflections.renewed : nullptr, lighting,
+                          [this](const PassView& from) { setFrame(from); }},
                          close.drawing);
     counters.chromeTextureBytes = cityChrome->bytes();
     mirrored.closeLight = cityChrome->light();

@@ -1,12 +1,15 @@
 #version 450 core
 // A piece of chrome seen in another: its environment map where its rays end, and over it the picture of what is close to it
-// (reflection/chrome/ChromeTree.h).
+// (reflection/chrome/ChromeTree.h). CLOSE: that picture alone, and its share over what the map shows; its part's pixels alone hold
+// something.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 from;
 layout(location = 3) in vec3 at;
 layout(location = 0) out vec4 colourOut;
+#ifndef CLOSE
 layout(binding = 8) uniform samplerCube map;
+#endif
 layout(binding = 12) uniform sampler2D picture;
 uniform vec3 mapCentre;
 uniform bool parallax;
@@ -18,6 +21,30 @@ uniform mat4 pictureFromRelative;
 uniform vec3 slice;  // axis; the picture is for places between these two
 uniform vec2 sliceEnds;
 
+#ifdef CLOSE
+vec4 pictureAt(vec2 uv) {
+    // Between texels, by what they hold.
+    vec2 place = uv * vec2(textureSize(picture, 0)) - 0.5;
+    ivec2 low = ivec2(floor(place)), most = ivec2(pictureShare * vec2(textureSize(picture, 0)) + 0.5) - 1;
+    vec2 part = place - vec2(low);
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < 4; ++k) {
+        ivec2 offset = ivec2(k & 1, k >> 1);
+        vec2 w = mix(1.0 - part, part, vec2(offset));
+        vec4 texel = texelFetch(picture, clamp(low + offset, ivec2(0), most), 0);
+        sum += w.x * w.y * vec4(texel.rgb * texel.a, texel.a);
+    }
+    return sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0);
+}
+
+void main() {
+    vec3 n = normalize(normal), d = normalize(position - from);
+    float along = dot(slice, position);
+    if (dot(d, n) >= 0.0 || along < sliceEnds.x || along >= sliceEnds.y) discard;
+    vec4 clip = pictureFromRelative * vec4(at, 1.0);
+    colourOut = pictureAt(clamp(0.5 + 0.5 * clip.xy / clip.w, vec2(0.0), vec2(1.0)) * pictureShare);
+}
+#else
 float nearnessAlong(vec3 direction) {
     vec3 a = abs(direction);
     return max(max(a.x, a.y), a.z) * textureLod(map, direction, 0.0).a;
@@ -45,3 +72,4 @@ void main() {
     }
     colourOut = vec4(tint * (1.0 - reflectance) + reflectance * light, 1.0);
 }
+#endif

@@ -35,7 +35,10 @@ layout(location = 5) in vec3 seenFrom;
 #else
 const vec3 seenFrom = vec3(0.0);
 #endif
-#ifdef CHROME
+#ifdef VIRTUAL
+uniform bool bounced;  // its chrome, seen in other chrome, shows close things too: as in views
+#endif
+#if defined CHROME || defined VIRTUAL
 // What chrome in this view shows of things close to it, and how far away that chrome is (reversed depth).
 layout(binding = 5) uniform sampler2D closeLight;
 layout(binding = 6) uniform sampler2D closeDepth;
@@ -77,8 +80,12 @@ void main() {
     glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint; glint *= glint;
     mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y * coat.z);
 #endif
-#ifdef CHROME
+#if defined CHROME || defined VIRTUAL
+#ifdef VIRTUAL
+    if (bounced && coat.x > 0.6) {
+#else
     if (coat.x > 0.6) {
+#endif
         // Of this very part: within a twentieth of its distance, more than a level of detail is off by.
         float depth = texelFetch(closeDepth, ivec2(gl_FragCoord.xy), 0).r;
         vec4 close = texelFetch(closeLight, ivec2(gl_FragCoord.xy), 0);

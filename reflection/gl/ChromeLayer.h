@@ -28,6 +28,7 @@ class ChromeLayer {
     void beginMask();
     void endMask();
     GLuint colour() const { return colour_.name(); }
+    GLuint depth() const { return depth_.name(); }
     const glm::ivec2& size() const { return size_; }  ///< texels, of which the view has the first
     std::size_t bytes() const {
         return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * 12;

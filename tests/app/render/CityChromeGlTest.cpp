@@ -2,6 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <optional>
+
 #include "app/display/OffscreenContext.h"
 #include "app/display/OffscreenTarget.h"
 #include "app/frame/ChromePlan.h"
@@ -232,6 +238,156 @@ TEST_F(CityChromeGlTest, whatStandsIsNeitherSearchedForNorDrawnAnew) {
     const ChromePlan other = plan();
     draw(maps, &other);
     EXPECT_EQ(counts().drawn, 1u);
+}
+
+// Two spheres beside each other, with posts about them: what the right one mirrors is seen in the left one.
+class CityChromeBouncesGlTest : public CityChromeGlTest {
+  protected:
+    static constexpr float radius = 1;
+    static inline const glm::vec3 left{0, 0, 1.2f}, right{0.2f, 2.6f, 1.2f};
+
+    CityChromeBouncesGlTest() {
+        for (const glm::vec3& centre : {left, right})
+            city_.reflectors.push_back({"ball", city::StandingReflector::Shape::sphere,
+                                        city::StandingReflector::Stuff::chrome,
+                                        centre - glm::vec3(0, 0, radius), radius, 2 * radius});
+        const auto post = [&](const glm::vec3& at, float height, float wide, std::uint32_t material) {
+            city::Prototype box;
+            box.levels.emplace_back();
+            test::addBox(box.levels.back().mesh, {-wide, -wide, 0}, {wide, wide, height}, material);
+            city_.prototypes.push_back(box);
+            city::Placement& placed = city_.placements.emplace_back();
+            placed.prototype = static_cast<std::uint32_t>(city_.prototypes.size() - 1);
+            placed.worldFromPrototype[3] = glm::vec4(at, 1);
+        };
+        post({1.4f, 1.3f, 0}, 0.7f, 0.15f, 1);
+        post({-1.5f, 2.2f, 0}, 2.2f, 0.2f, 1);
+        post({1.8f, 3.4f, 0}, 1.6f, 0.2f, 1);
+        const std::vector<vehicles::VehicleModel> standing = standingModels(city_);
+        models_ = {test::boxCar()};
+        models_.insert(models_.end(), standing.begin(), standing.end());
+        RenderOptions options;
+        options.antialiasing = Antialiasing::none;
+        renderer_ = std::make_unique<SceneRenderer>(city_, models_, options);
+        close_ = std::make_unique<CloseScene>(city_, models_);
+        renderer_->setCloseScene(close_.get());
+        view_ = lookAt({3.2, -0.6, 1.7}, {0, 0.3, 1.2}, glm::radians(40.0), size);
+        frame_.vehicles = standingPoses(city_, 1);
+        frame_.vehicles.push_back(test::poseAt(1, 0, {1.2, 5.2, 0}, 0.1));
+        frame_.vehicles.back().paint = {0.5f, 0.05f, 0.04f};
+        frame_.lighting = lightingAt(15, 50);
+        frame_.views = {view_};
+        city::Heightfield field(8, 8, 50, {-200, -200});
+        tracer_ = std::make_unique<reflection::GridTracer>(field);
+        ReflectionSettings settings;
+        settings.method = ReflectionMethod::rerender;
+        engine_ = std::make_unique<ReflectionEngine>(*tracer_, maps_, models_, settings);
+    }
+
+    ChromePlan planned() const {
+        const std::vector<std::uint32_t> seen{0, 1, 2};
+        return planChrome(frame_, seen, models_, close_->parts, {});
+    }
+    static std::optional<double> meets(const glm::dvec3& from, const glm::dvec3& towards,
+                                       const glm::dvec3& centre) {
+        const glm::dvec3 c = centre - from;
+        const double along = glm::dot(c, towards),
+                     left2 = double{radius} * radius - glm::dot(c, c) + along * along;
+        if (along <= 0 || left2 <= 0) return {};
+        return along - std::sqrt(left2);
+    }
+    /// Pixels that show one ball within the other.
+    std::vector<unsigned char> metTwice() const {
+        std::vector<unsigned char> mask(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+        const glm::dmat4 relativeFromClip =
+            glm::inverse(glm::dmat4(view_.clipFromView * view_.viewFromWorld));
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                // Pictures' rows run downwards.
+                const glm::dvec4 p = relativeFromClip * glm::dvec4((x + 0.5) / size.x * 2 - 1,
+                                                                   1 - (y + 0.5) / size.y * 2, 0.5, 1);
+                const glm::dvec3 d = glm::normalize(glm::dvec3(p) / p.w);
+                for (const bool first : {true, false}) {
+                    const glm::dvec3 a(first ? left : right), b(first ? right : left);
+                    const std::optional<double> t = meets(view_.eye, d, a);
+                    if (!t) continue;
+                    const glm::dvec3 at = view_.eye + *t * d, n = glm::normalize(at - a);
+                    if (meets(at, d - 2.0 * glm::dot(d, n) * n, b))
+                        mask[static_cast<std::size_t>(y * size.x + x)] = 1;
+                }
+            }
+        return mask;
+    }
+};
+
+TEST_F(CityChromeBouncesGlTest, aBallSeenInAnotherMirrorsWhatIsCloseToIt) {
+    const ChromePlan chrome = planned();
+    ASSERT_EQ(chrome.jobs.size(), 2u);
+    RayTracer rays(city_, models_);
+    rays.prepare(frame_);
+    renderer_->prepare(frame_);
+    rays.useSunMap(renderer_->sunMap());
+    if (reflection::softwareRenderer()) rays.useTextureFilter(TextureFilter::llvmpipe);
+    TraceOptions many;
+    many.samples = 16;
+    many.bounces = 3;
+    const std::vector<glm::vec3> truth = rays.render(view_, many).display(frame_.lighting.exposure);
+    const std::vector<unsigned char> mask = metTwice();
+    ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 500);
+    renderer_->prepare(frame_);
+    const std::vector<SeenVehicle> seen{{0, 200}, {1, 200}, {2, 200}};
+    const ReflectionPlan& made = engine_->update(frame_, seen, *renderer_);
+    const VehicleReflections maps{engine_->textures(), made.slots, 0};
+    std::array<double, 4> errors{};
+    for (const int bounces : {1, 2, 3}) {
+        ChromeDrawing drawing;
+        drawing.bounces = bounces;
+        const std::vector<glm::vec3> image = draw(maps, &chrome, drawing);
+        const ChromeCounts& counts = renderer_->counters().chrome;
+        EXPECT_EQ(counts.pictures, bounces == 1 ? 0u : bounces == 2 ? 2u : counts.pictures);
+        EXPECT_EQ(counts.picturesDrawn, counts.pictures);
+        const reflection::ImageView a{size.x, size.y, image}, b{size.x, size.y, truth};
+        errors[static_cast<std::size_t>(bounces)] = reflection::meanError(reflection::flip(a, b), mask);
+        RecordProperty("flip_" + std::to_string(bounces),
+                       std::to_string(errors[static_cast<std::size_t>(bounces)]));
+        write("city_bounces_" + std::to_string(bounces), image);
+    }
+    write("city_bounces_truth", truth);
+    EXPECT_LT(errors[2], 0.6 * errors[1]) << errors[2] << " against " << errors[1];
+    EXPECT_LE(errors[3], 1.02 * errors[2]) << errors[3] << " against " << errors[2];
+}
+
+TEST_F(CityChromeBouncesGlTest, picturesStayWhileNothingMovesAndGoOnWhenItDoes) {
+    renderer_->prepare(frame_);
+    const std::vector<SeenVehicle> seen{{0, 200}, {1, 200}, {2, 200}};
+    const ReflectionPlan& made = engine_->update(frame_, seen, *renderer_);
+    VehicleReflections maps{engine_->textures(), made.slots, 0};
+    maps.renewed.emplace();
+    const auto counts = [&] { return renderer_->counters().chrome; };
+    const ChromePlan first = planned();
+    ChromeDrawing two, one;
+    two.bounces = 2;
+    const std::vector<glm::vec3> before = draw(maps, &first, two);
+    EXPECT_EQ(counts().pictures, 2u);
+    EXPECT_EQ(draw(maps, &first, two), before);
+    EXPECT_EQ(counts().pictures, 2u);
+    EXPECT_EQ(counts().picturesDrawn, 0u);
+    EXPECT_EQ(counts().drawn, 0u);
+    EXPECT_EQ(counts().searched, 0u);
+    // With one bounce, and back.
+    const std::vector<glm::vec3> plain = draw(maps, &first, one);
+    EXPECT_EQ(counts().pictures, 0u);
+    EXPECT_NE(plain, before);
+    EXPECT_EQ(draw(maps, &first, two), before);
+    // The car in the right ball moves: as if all were drawn anew.
+    frame_.vehicles.back().position.y += 0.3;
+    renderer_->prepare(frame_);
+    const ChromePlan moved = planned();
+    const std::vector<glm::vec3> after = draw(maps, &moved, two);
+    EXPECT_GT(counts().picturesDrawn, 0u);
+    EXPECT_NE(after, before);
+    maps.renewed.reset();
+    EXPECT_EQ(draw(maps, &moved, two), after);
 }
 
 }  // namespace
