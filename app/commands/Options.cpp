@@ -165,9 +165,11 @@ void addChrome(CLI::App& parser, Options& o) {
         ->type_name("auto|off")
         ->check(CLI::IsMember({"auto", "off"}));
     parser
-        .add_option("--chrome-share", o.chromeShare,
-                    "share of close vehicles' vertices that are searched for in chrome, 0.001 to 1; the rest "
-                    "follow them on a grid")
+        .add_option(
+            "--chrome-share", o.chromeShare,
+            "share of close things' vertices that are searched for in chrome, 0.001 to 1; the rest follow "
+            "them in cells. What is drawn goes beyond it where a cell would be off by a quarter of a "
+            "pixel; 1 searches for all")
         ->type_name("SHARE")
         ->capture_default_str()
         ->check(between(0.001, 1, ""));
