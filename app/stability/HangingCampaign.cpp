@@ -135,10 +135,11 @@ void judge(const city::Ray& ray, const TraceResult& met, float inFan, const Grid
     const double low = static_cast<double>(hanging.underside.at(met.cell.x, met.cell.y)),
                  high = static_cast<double>(hanging.top.at(met.cell.x, met.cell.y));
     const double off = std::max({low - z, z - high, 0.0});
-    // Rounding t moves the place along the ray by as much.
-    const double share = off / (rounding * (std::abs(static_cast<double>(ray.origin.z)) + std::abs(along) +
-                                            std::max(std::abs(low), std::abs(high))) +
-                                std::numeric_limits<float>::denorm_min());
+    // Rounding t moves the place along the ray by as much; below the normal floats by half of the smallest.
+    const double ofT = std::abs(static_cast<double>(ray.direction.z)) * 0x1p-150;
+    const double heights = std::abs(static_cast<double>(ray.origin.z)) + std::abs(along) +
+                           std::max(std::abs(low), std::abs(high));
+    const double share = off / (rounding * heights + ofT + 0x1p-149);
     tally.worst = std::max(tally.worst, share);
     tally.offCrown += share > 1 ? 1 : 0;
 }
@@ -223,7 +224,7 @@ std::vector<Row> tryHanging(const Options& options) {
         counted("rays among crowns: four places before where they are met that lie in one", all.through,
                 "a place more than 2^-8 of a cell from its borders, told in doubles"),
         {"hanging", "rays that enter a crown: off its height there", all.entered, all.offCrown, all.worst, 1,
-         "of 2^-21 of the heights", "t and heights are floats, four roundings",
+         "of 2^-21 of the heights", "t and heights are floats, four roundings; t may be denormal",
          all.offCrown > 0 ? all.example : ""},
     };
 }
