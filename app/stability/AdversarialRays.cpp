@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace app::stability {
@@ -268,6 +269,16 @@ glm::vec3 directionOf(RayFamily family, const city::Heightfield& field, const gl
         if (!std::isfinite(v[c])) v[c] = 1;
     if (v == glm::vec3(0)) v[random.below(3)] = random.oneOf({1e-45f, -1, 1});
     return v;
+}
+
+std::string described(const city::Ray& ray, std::string_view field, std::uint64_t seed) {
+    std::array<char, 320> text{};
+    std::snprintf(text.data(), text.size(), "%.*s, seed %llu, origin (%a, %a, %a) direction (%a, %a, %a)",
+                  static_cast<int>(field.size()), field.data(), static_cast<unsigned long long>(seed),
+                  static_cast<double>(ray.origin.x), static_cast<double>(ray.origin.y),
+                  static_cast<double>(ray.origin.z), static_cast<double>(ray.direction.x),
+                  static_cast<double>(ray.direction.y), static_cast<double>(ray.direction.z));
+    return text.data();
 }
 
 }  // namespace app::stability

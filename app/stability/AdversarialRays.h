@@ -2,6 +2,7 @@
 
 #include <glm/vec2.hpp>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "app/stability/SeededRandom.h"
@@ -59,5 +60,9 @@ glm::vec3 startOf(RayFamily family, const city::Heightfield& field, SeededRandom
 /// A direction of the family from that start; never zero, always finite.
 glm::vec3 directionOf(RayFamily family, const city::Heightfield& field, const glm::vec3& start,
                       SeededRandom& random);
+
+/// A ray by which a row's first failure can be found again: every bit of it, its field, and the seed that
+/// made that.
+std::string described(const city::Ray& ray, std::string_view field, std::uint64_t seed);
 
 }  // namespace app::stability

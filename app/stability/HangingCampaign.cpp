@@ -3,10 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "app/stability/AdversarialRays.h"
@@ -170,16 +169,8 @@ Tally tryField(const FieldKind& kind, std::uint64_t seed, std::uint64_t stream) 
                 const std::uint64_t before = tally.failures();
                 judge(ray, tracer.trace(ray), t[k], bare, filled, crowns.hanging, tracer, random, tally);
                 if (tally.failures() == before || !tally.example.empty()) continue;
-                std::array<char, 320> text{};
-                std::snprintf(text.data(), text.size(),
-                              "%.*s, %.*s, stream %llu, origin (%a, %a, %a) direction (%a, %a, %a)",
-                              static_cast<int>(kind.name.size()), kind.name.data(),
-                              static_cast<int>(nameOf(family).size()), nameOf(family).data(),
-                              static_cast<unsigned long long>(stream), static_cast<double>(start.x),
-                              static_cast<double>(start.y), static_cast<double>(start.z),
-                              static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-                              static_cast<double>(ray.direction.z));
-                tally.example = text.data();
+                tally.example =
+                    described(ray, std::string(kind.name) + ", " + std::string(nameOf(family)), stream);
             }
             done += count;
         }

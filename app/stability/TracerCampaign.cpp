@@ -7,7 +7,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "app/stability/AdversarialRays.h"
@@ -35,16 +34,6 @@ double threadSeconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::string described(const city::Ray& ray, std::string_view field, std::uint64_t seed) {
-    std::array<char, 320> text{};
-    std::snprintf(text.data(), text.size(), "%.*s, seed %llu, origin (%a, %a, %a) direction (%a, %a, %a)",
-                  static_cast<int>(field.size()), field.data(), static_cast<unsigned long long>(seed),
-                  static_cast<double>(ray.origin.x), static_cast<double>(ray.origin.y),
-                  static_cast<double>(ray.origin.z), static_cast<double>(ray.direction.x),
-                  static_cast<double>(ray.direction.y), static_cast<double>(ray.direction.z));
-    return text.data();
 }
 
 /// How the rays of one family fared in one kind of field.
