@@ -141,24 +141,31 @@ TEST(VirtualMesh, BigTrianglesWithHiddenCornersCoverOnlyWhatTheyReach) {
     }
 }
 
+/// Eight by eight squares in a plane of constant y, from a corner on.
+struct Panel {
+    Panel(const glm::vec3& corner, float side) {
+        for (int j = 0; j <= 8; ++j)
+            for (int i = 0; i <= 8; ++i) corners.push_back(corner + side * glm::vec3(float(i), 0, float(j)));
+        for (std::uint32_t j = 0; j < 8; ++j)
+            for (std::uint32_t i = 0; i < 8; ++i) {
+                const std::uint32_t a = j * 9 + i;
+                triangles.insert(triangles.end(), {a, a + 1, a + 10, a, a + 10, a + 9});
+            }
+    }
+    std::vector<glm::vec3> corners;
+    std::vector<std::uint32_t> triangles;
+};
+
 TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
     const ReflectorMap map =
         buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 100, 2.0, glm::pi<double>(), true), {0, 0, 0},
                           Bend::concave)
             .map;
     // A panel through the region where the bowl shows things several times.
-    std::vector<glm::vec3> panel;
-    std::vector<std::uint32_t> triangles;
-    for (int j = 0; j <= 8; ++j)
-        for (int i = 0; i <= 8; ++i) panel.push_back({-.8f + .2f * float(i), .3f, -.7f + .2f * float(j)});
-    for (std::uint32_t j = 0; j < 8; ++j)
-        for (std::uint32_t i = 0; i < 8; ++i) {
-            const std::uint32_t a = j * 9 + i;
-            triangles.insert(triangles.end(), {a, a + 1, a + 10, a, a + 10, a + 9});
-        }
+    const Panel panel({-.8f, .3f, -.7f}, .2f);
     VirtualMeshOptions options;
     options.mostHalvings = 3;
-    VirtualMesh mesh(panel, triangles, options);
+    VirtualMesh mesh(panel.corners, panel.triangles, options);
     const glm::dvec3 eye(.1, -.5, 1.5);
     mesh.update(map, eye, glm::dmat4(1), options);
     for (std::size_t k = 0; k + 2 < mesh.indices().size(); k += 3)
@@ -175,23 +182,15 @@ TEST(VirtualMesh, ShowsEveryImageInABowlWhereItIs) {
         buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 100, 2.0, glm::pi<double>(), true), {0, 0, 0},
                           Bend::concave)
             .map;
-    std::vector<glm::vec3> panel;
-    std::vector<std::uint32_t> triangles;
-    for (int j = 0; j <= 8; ++j)
-        for (int i = 0; i <= 8; ++i) panel.push_back({-.6f + .15f * float(i), .3f, -.6f + .15f * float(j)});
-    for (std::uint32_t j = 0; j < 8; ++j)
-        for (std::uint32_t i = 0; i < 8; ++i) {
-            const std::uint32_t a = j * 9 + i;
-            triangles.insert(triangles.end(), {a, a + 1, a + 10, a, a + 10, a + 9});
-        }
+    const Panel panel({-.6f, .3f, -.6f}, .15f);
     // Followed from a few places that are searched everywhere, as from all of them.
     for (const double share : {1.0, 0.1}) {
         VirtualMeshOptions options;
         options.vertices.share = share;
-        VirtualMesh mesh(panel, triangles, options);
+        VirtualMesh mesh(panel.corners, panel.triangles, options);
         const glm::dvec3 eye(.1, -.5, 1.5);
         mesh.update(map, eye, glm::dmat4(1), options);
-        std::vector<glm::dvec3> places(panel.begin(), panel.end());
+        std::vector<glm::dvec3> places(panel.corners.begin(), panel.corners.end());
         for (const MiddleVertex& m : mesh.middles())
             places.push_back(places[m.a] + double(m.share) * (places[m.b] - places[m.a]));
         ASSERT_EQ(places.size(), mesh.vertices().size());
