@@ -216,6 +216,12 @@ void Drive::advance(double seconds) {
 
 FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
     frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view}, scene_->staged);
+    if (!rehearsed_) {
+        rehearsed_ = true;
+        drawFrame(view, framebuffer);
+        finishDrawing();
+        timer_ = {};
+    }
     if (choosing_) chooseOnce(view, framebuffer);
     return drawFrame(view, framebuffer);
 }

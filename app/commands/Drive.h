@@ -63,6 +63,8 @@ class Drive {
 
     /// Simulates on, in the traffic's fixed steps; what is left of a step is kept for the next call.
     void advance(double seconds);
+    /// The first call draws its frame twice: what is made with a first picture (programs, the sun's shadow
+    /// map, the first local maps, chrome's surroundings) belongs to the start, not to a frame that is shown.
     FrameStats draw(const View& view, std::uint32_t framebuffer);
 
     const DriveSettings& settings() const { return settings_; }
@@ -121,6 +123,7 @@ class Drive {
     std::unique_ptr<ReflectionEngine> engine_;
     std::optional<Governor> governor_;
     bool choosing_ = false;
+    bool rehearsed_ = false;
     FrameTimer timer_;
     std::optional<DetailLadder> ladder_;  ///< of this quality's renderer
     VehicleReflections reflections_;
