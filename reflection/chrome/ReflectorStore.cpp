@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -32,6 +34,9 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "MSREFL01";
 /// A face of more cells is nothing that this program makes.
 constexpr std::uint32_t mostCells = 4096;
+constexpr const char *ending = ".reflector", *partialEnding = ".partial";
+/// Nobody writes at one file for so long.
+constexpr std::chrono::hours abandonedAfter{24};
 
 class Writer {
   public:
@@ -197,8 +202,43 @@ std::uint64_t ReflectorStore::hashOf(const city::Mesh& part, const CutOptions& o
 
 std::filesystem::path ReflectorStore::fileOf(std::uint64_t hash) const {
     std::ostringstream name;
-    name << std::hex << hash << ".reflector";
+    name << std::hex << hash << ending;
     return folder_ / name.str();
+}
+
+void ReflectorStore::makeRoom(const std::filesystem::path& saved) const {
+    namespace fs = std::filesystem;
+    struct File {
+        fs::path path;
+        fs::file_time_type used;
+        std::uintmax_t bytes = 0;
+    };
+    std::vector<File> files;
+    std::uintmax_t all = 0;
+    const fs::file_time_type now = fs::file_time_type::clock::now();
+    std::error_code error;  // whatever cannot be looked at or removed stays
+    for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+        std::error_code own;
+        const fs::path& path = at->path();
+        if (!at->is_regular_file(own) || own) continue;
+        const File file{path, at->last_write_time(own), at->file_size(own)};
+        if (own) continue;
+        if (path.extension() == partialEnding && now - file.used > abandonedAfter) {
+            fs::remove(path, own);
+        } else if (path.extension() == ending) {
+            all += file.bytes;
+            if (path.filename() != saved.filename()) files.push_back(file);
+        }
+    }
+    std::ranges::sort(files, [](const File& a, const File& b) {
+        return a.used != b.used ? a.used < b.used : a.path < b.path;
+    });
+    for (const File& file : files) {
+        if (all <= mostBytes_) return;
+        std::error_code own;
+        fs::remove(file.path, own);
+        if (!own) all -= file.bytes;
+    }
 }
 
 ReflectorStore::Loaded ReflectorStore::load(std::uint64_t hash) const {
@@ -227,6 +267,8 @@ ReflectorStore::Loaded ReflectorStore::load(std::uint64_t hash) const {
         whole = takePiece(from, reflector.pieces.emplace_back());
     if (!whole || !from.done()) return refuse("its content does not make sense");
     reflector.skipped = static_cast<std::size_t>(skipped);
+    std::error_code notOurs;  // a folder that cannot be written is read all the same
+    std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now(), notOurs);
     return {std::move(reflector), {}};
 }
 
@@ -256,14 +298,14 @@ void ReflectorStore::save(std::uint64_t hash, const Reflector& reflector) const 
     w.add(packedFileHash(w.bytes));
     const std::filesystem::path file = fileOf(hash);
     std::filesystem::path aside = file;
-    aside += "." + std::to_string(::getpid()) + ".partial";
+    aside += "." + std::to_string(::getpid()) + partialEnding;
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     std::ofstream out(aside, std::ios::binary | std::ios::trunc);
     out.write(reinterpret_cast<const char*>(w.bytes.data()), static_cast<std::streamsize>(w.bytes.size()));
     out.close();
     if (out) std::filesystem::rename(aside, file, error);
-    if (out && !error) return;
+    if (out && !error) return makeRoom(file);
     std::error_code ignored;
     std::filesystem::remove(aside, ignored);
     throw std::runtime_error(file.string() + ": cannot be written" +
