@@ -19,6 +19,12 @@ constexpr float leftOut = 0.1f;
 /// its corners, whatever they say.
 constexpr double widestCell = 0.5;
 
+/// A cell's reflection points lie no farther from the middle of its corners' than these do, times this.
+constexpr double beyondCorners = 1.5;
+
+/// Share of the tolerance by which slopes at corners may disagree in a cell that needs no check.
+constexpr float surelySmooth = 0.3f;
+
 /// Every so many updates a cell that was cut is judged anew: as a picture gets smaller it needs fewer.
 constexpr std::uint32_t rejudged = 16;
 /// Every so many updates a cell that was smooth and still is by its corners is checked again.
@@ -296,6 +302,25 @@ glm::dvec3 CellImage::guessIn(const CellTree::Cell& cell, std::uint32_t place) c
     return weights > 1e-3 ? sum / weights : glm::dvec3(NAN);
 }
 
+bool CellImage::clearOfPart(const CellTree::Cell& cell) const {
+    const ReflectorMap& map = *scene.map;
+    if (map.closed()) return false;
+    std::array<glm::dvec3, 8> at;
+    glm::dvec3 middle(0);
+    for (std::size_t k = 0; k < 8; ++k) {
+        at[k] = map.frame().toMap(nodes[cell.nodes[k]].point);
+        if (map.covered(at[k])) return false;
+        middle += at[k] / 8.0;
+    }
+    double farthest = 0;
+    for (const glm::dvec3& p : at) {
+        const double d = glm::length((p - middle) / map.frame().stretch);
+        if (!(d <= farthest)) farthest = d;
+    }
+    // What is not a number is not clear of anything.
+    return beyondCorners * farthest < map.fromRim(middle);
+}
+
 CellImage::Judgement CellImage::judge(std::uint32_t id) const {
     const CellTree::Cell& cell = tree.cells()[id];
     const std::array<std::uint32_t, 8>& n = cell.nodes;
@@ -315,6 +340,7 @@ CellImage::Judgement CellImage::judge(std::uint32_t id) const {
         j.cell.straight = true;
         j.kind = Kind::smooth;
         if (hidden == 8 && scene.convex) return j;
+        if (clearOfPart(cell)) return j;
         const float extent = extentOf(cell), chord = extent * extent;
         j.error = leftOut * extent;
         j.kind = chord <= scene.unbent ? Kind::smooth : (chord <= scene.widest ? Kind::check : Kind::bent);
@@ -355,7 +381,10 @@ CellImage::Judgement CellImage::judge(std::uint32_t id) const {
         j.kind = Kind::bent;
         if (!(widest <= scene.widest) || !(j.error >= 0)) j.error = leftOut * extentOf(cell);
     } else
-        j.kind = widest > scene.unbent ? Kind::check : Kind::smooth;
+        j.kind = widest > scene.unbent &&
+                         (mixed || j.error > surelySmooth * static_cast<float>(settings.cellTolerance))
+                     ? Kind::check
+                     : Kind::smooth;
     return j;
 }
 

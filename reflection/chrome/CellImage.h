@@ -102,6 +102,8 @@ class CellImage {
     /// Whether the vertex searched for to check a cell lies where its corners say.
     /// Gives by how much it does not (radians), or 0.
     float offBy(const SmoothCell& cell, const ReflectionPoint& r) const;
+    /// Of a cell none of whose corners is seen: all of it is reflected past the rim, far from the part.
+    bool clearOfPart(const CellTree::Cell& cell) const;
     /// How far apart a cell's corners are seen, radians; no more than the reflector is wide.
     float extentOf(const CellTree::Cell& cell) const;
     /// Opens cells from the k-th that is to be opened as they were cut in the last update.

@@ -57,7 +57,10 @@ ReflectorMap::ReflectorMap(int cellsPerSide, Bend bend, const MapFrame& frame, s
     whole = std::all_of(own.begin(), own.end(), [](std::uint8_t c) { return c != 0; });
     findRadii();
     byNormal = indexNormals(false);
-    if (!whole) byCoveredNormal = indexNormals(true);
+    if (!whole) {
+        byCoveredNormal = indexNormals(true);
+        findRim();
+    }
     balls = SurfacePatches(*this);
 }
 
@@ -101,6 +104,35 @@ ReflectorMap::Sample ReflectorMap::sample(const glm::dvec3& direction) const {
     result.gauge = largest * q;
     result.covered = cover >= 0.5;
     return result;
+}
+
+void ReflectorMap::findRim() {
+    const auto isOwn = [&](int face, int column, int row) {
+        return own[cornerIndex(cells, face, column, row)] != 0;
+    };
+    for (int face = 0; face < 6; ++face)
+        for (int row = 0; row < cells; ++row)
+            for (int column = 0; column < cells; ++column) {
+                int count = 0;
+                for (int k = 0; k < 4; ++k) count += isOwn(face, column + (k & 1), row + (k >> 1));
+                if (count == 0 || count == 4) continue;
+                for (int k = 0; k < 4; ++k) {
+                    const int i = column + (k & 1), j = row + (k >> 1);
+                    if (isOwn(face, i, j))
+                        rim.emplace_back(sample(place.stretch * cornerPoint(cells, face, i, j)).position /
+                                         place.stretch);
+                }
+            }
+}
+
+double ReflectorMap::fromRim(const glm::dvec3& point) const {
+    const glm::vec3 at(point / place.stretch);
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& r : rim) {
+        const glm::vec3 d = r - at;
+        nearest = std::min(nearest, glm::dot(d, d));
+    }
+    return std::sqrt(static_cast<double>(nearest));
 }
 
 void ReflectorMap::findRadii() {

@@ -35,17 +35,6 @@ constexpr float stays = 1.5f;
 
 }  // namespace
 
-glm::dvec3 reflectionPointOf(const VirtualVertex& seen, const glm::dvec3& eye, const glm::dvec3& vertex) {
-    // |eye + s u - vertex| = path - s, solved for s.
-    const glm::dvec3 path(seen.fromEye), away = eye - vertex;
-    const double length = glm::length(path), straight = glm::length(away);
-    const glm::dvec3 u = path / std::max(length, 1e-300);
-    const double by = 2 * (length + glm::dot(u, away));
-    if (!(by > 0)) return eye;
-    const double s = (length - straight) * (length + straight) / by;
-    return eye + std::clamp(s, 0.0, length) * u;
-}
-
 void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                           std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
                           const VirtualOptions& options, std::span<const glm::dvec3> guesses) {

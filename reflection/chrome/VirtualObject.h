@@ -12,10 +12,6 @@
 
 namespace reflection {
 
-/// Where on the piece a virtual vertex is seen, from what it is drawn with: on its line of sight, where the
-/// rest of its path reaches the vertex. Frame: the reflector's. The eye, where there is no such place.
-glm::dvec3 reflectionPointOf(const VirtualVertex& seen, const glm::dvec3& eye, const glm::dvec3& vertex);
-
 /// A mesh near a reflector whose image in one of the reflector's pieces is kept up to date. Source: Estalella
 /// et al. 2005, sections 3 and 5; departures: CellImage.h, in place of a regular grid.
 class VirtualObject {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "reflection/chrome/ReflectionPoint.h"
@@ -14,5 +16,19 @@ struct VirtualVertex {
     glm::vec3 fromEye{0};
     ReflectionStatus status = ReflectionStatus::invalid;
 };
+
+/// Where on the piece a virtual vertex is seen, from what it is drawn with: on its line of sight, where the
+/// rest of its path reaches the vertex. Frame: the reflector's. The eye, where there is no such place.
+inline glm::dvec3 reflectionPointOf(const VirtualVertex& seen, const glm::dvec3& eye,
+                                    const glm::dvec3& vertex) {
+    // |eye + s u - vertex| = path - s, solved for s.
+    const glm::dvec3 path(seen.fromEye), away = eye - vertex;
+    const double length = glm::length(path), straight = glm::length(away);
+    const glm::dvec3 u = path / std::max(length, 1e-300);
+    const double by = 2 * (length + glm::dot(u, away));
+    if (!(by > 0)) return eye;
+    const double s = (length - straight) * (length + straight) / by;
+    return eye + std::clamp(s, 0.0, length) * u;
+}
 
 }  // namespace reflection

@@ -174,6 +174,32 @@ TEST(VirtualObject, SearchesNoMoreThanItsShareAndIsFartherOffTheSmallerThatIs) {
     EXPECT_LT(worst.back(), 1.0);
 }
 
+TEST(VirtualObject, WhatIsReflectedPastTheRimTakesNothingFromTheRest) {
+    // The lower part of a ball, as a bowl's outside: a mug above its rim shows nowhere in it, one beside it
+    // does.
+    Table table;
+    table.map =
+        buildReflectorMap(meshOf(ellipsoid({.12, .12, .12}), 100, 1.6), {0, 0, -.04}, Bend::convex).map;
+    ASSERT_FALSE(table.map.closed());
+    const std::vector<glm::dmat4> places{table.at({.1, -.25, -.2}), table.at({.1, .1, .3}),
+                                         table.at({-.3, 0, .3}), table.at({.2, .2, .35})};
+    std::vector<VirtualObject> all(places.size(), VirtualObject(table.mug, {.share = 1})),
+        some(places.size(), VirtualObject(table.mug, {.share = 0.096}));
+    std::vector<VirtualObject::Placed> placed;
+    std::size_t lost = 0, found = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        placed.push_back({&some[k], places[k], {}});
+        found += all[k].update(table.map, table.eye, places[k]).found;
+    }
+    VirtualObject::update(table.map, table.eye, placed);
+    ASSERT_GT(found, 1000U);
+    for (std::size_t k = 0; k < places.size(); ++k) EXPECT_LT(worstApart(all[k], some[k], lost), 1.0) << k;
+    EXPECT_EQ(lost, 0U);
+    // Without telling them apart they would take as many as what is seen does.
+    for (std::size_t k = 1; k < places.size(); ++k)
+        EXPECT_LT(placed[k].counts.searched, table.mug.size() / 50) << k;
+}
+
 TEST(VirtualObject, CellsAtTheEndOfItsBudgetDoNotComeAndGo) {
     Table table;
     const std::vector<glm::vec3> wall = positionsOf(meshOf(roundedBox({.6, .02, .4}, 4), 40));
