@@ -34,7 +34,8 @@ Drive::Drive(const Scene& scene, const Options& options, std::string renderer)
       settings_{options.method,  options.mem,         options.quality,       options.cars.front(),
                 options.hour,    options.budgetMs,    options.error,         options.fixedQuality,
                 options.mirrors, options.mirrorDepth, options.mirrorMaps,    options.mirrorFade,
-                options.chrome,  options.chromeShare, options.chromeBounces, options.weather},
+                options.chrome,  options.chromeShare, options.chromeBounces, options.weather,
+                options.adapt},
       traffic_(startTraffic(scene, options.seed, options.cars.front())),
       mirrorPlanner_(scene.glass.fronts),
       waitForChrome_(options.offscreen || options.fixedQuality),
@@ -214,8 +215,11 @@ void Drive::advance(double seconds) {
     }
 }
 
-FrameStats Drive::draw(const View& view, std::uint32_t framebuffer) {
+FrameStats Drive::draw(const View& view, std::uint32_t framebuffer, double seconds) {
     frame_ = assembleFrame(scene_->city, traffic_, lighting_, {view}, scene_->staged);
+    if (settings_.adapt && prepared_.tracer)
+        frame_.adaptation =
+            adaptation_.follow(exposureAround(*prepared_.tracer, lighting_, view.eye), view.eye, seconds);
     if (!rehearsed_) {
         rehearsed_ = true;
         drawFrame(view, framebuffer);

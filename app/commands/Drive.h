@@ -11,6 +11,7 @@
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/ChromePlan.h"
 #include "app/frame/DriveSettings.h"
+#include "app/frame/EyeAdaptation.h"
 #include "app/frame/Governor.h"
 #include "app/frame/MirrorPlan.h"
 #include "app/frame/ReflectionEngine.h"
@@ -65,7 +66,8 @@ class Drive {
     void advance(double seconds);
     /// The first call draws its frame twice: what is made with a first picture (programs, the sun's shadow
     /// map, the first local maps, chrome's surroundings) belongs to the start, not to a frame that is shown.
-    FrameStats draw(const View& view, std::uint32_t framebuffer);
+    /// `seconds`: since the last picture, for the viewer's eye, which adapts while the traffic stands too.
+    FrameStats draw(const View& view, std::uint32_t framebuffer, double seconds);
 
     const DriveSettings& settings() const { return settings_; }
     /// Takes over what changed: other cars start the traffic anew, other quality the renderer, another hour
@@ -127,6 +129,7 @@ class Drive {
     FrameTimer timer_;
     std::optional<DetailLadder> ladder_;  ///< of this quality's renderer
     VehicleReflections reflections_;
+    EyeAdaptation adaptation_;
     FrameScene frame_;
     double lead_ = 0;  ///< seconds asked for and not yet simulated
 };

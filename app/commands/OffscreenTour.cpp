@@ -109,7 +109,8 @@ int runOffscreenTour(const Options& asked) {
         camera.update(frame == 0 ? 0 : frameTime, drive.traffic().poses(), {});
         const View view =
             lookAt(camera.pose().eye, camera.pose().target, glm::radians(60.0), options.resolution);
-        report.add(drive.draw(view, target.framebuffer()), drive.settings(), options.resolution);
+        report.add(drive.draw(view, target.framebuffer(), frame == 0 ? 0 : frameTime), drive.settings(),
+                   options.resolution);
 
         Image8 image = readPixels(target.framebuffer(), options.resolution);
         const Picture picture{image.size.x, image.size.y, std::move(image.rgba)};

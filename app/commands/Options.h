@@ -47,6 +47,7 @@ struct Options {
     bool fixedQuality = false;         ///< --fixed-quality
     double cell = 1;                   ///< metres, side of a heightfield cell
     double hour = 15;                  ///< local solar time
+    bool adapt = true;                 ///< --exposure auto: pictures open in shaded streets
     glm::ivec2 resolution{1280, 720};  ///< pixels
     std::filesystem::path out = "out";
     std::optional<std::filesystem::path> json;

@@ -108,6 +108,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
                                    {"width", stretch.size.x},
                                    {"height", stretch.size.y},
                                    {"hour", settings.hour},
+                                   {"exposure", settings.adapt ? "auto" : "hour"},
                                    {"frame_ms", toJson(frame)},
                                    {"reflection_ms", toJson(reflection)},
                                    {"maps_updated_per_frame", mapsPerFrame},

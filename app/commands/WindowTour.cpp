@@ -114,7 +114,7 @@ CarryOn WindowTour::showWaiting(const std::string& remark) {
     const bool longWork = choices_.settings.hour != drive_.settings().hour || drive_.engine() == nullptr;
     if (longWork && size.x > 0 && size.y > 0) {
         auto backdrop = std::make_unique<OffscreenTarget>(size);
-        drive_.draw(view(size), backdrop->framebuffer());
+        drive_.draw(view(size), backdrop->framebuffer(), 0);
         progress_.setBackdrop(std::move(backdrop));
     }
     return [this, remark](std::size_t done, std::size_t total) {
@@ -223,7 +223,8 @@ PanelNews WindowTour::news() {
     const auto& slots = drive_.reflections().slots;
     if (!choices_.showMap || index >= slots.size() || !slots[index].valid()) return news;
     news.mapTexture =
-        mapView_.draw(drive_.reflections().textures, slots[index], drive_.frame().lighting.exposure);
+        mapView_.draw(drive_.reflections().textures, slots[index],
+                      drive_.frame().lighting.exposure * static_cast<float>(drive_.frame().adaptation));
     news.mapFaceSize = reflection::localMapFaceSizes[static_cast<std::size_t>(slots[index].sizeClass)];
     mesh_.clear();
     if (choices_.showMesh && drive_.settings().method == ReflectionMethod::mem && drive_.engine() != nullptr)
@@ -273,7 +274,7 @@ void WindowTour::frame() {
     moveCamera(moving ? seconds : 0, controls.camera);
     const bool screenshot = controls.actions.screenshot || choices_.screenshot;
 
-    stats_ = drive_.draw(view(size), 0);
+    stats_ = drive_.draw(view(size), 0, seconds);
     report_.add(stats_, drive_.settings(), size);
     if (frameMs_.size() == graphLength) frameMs_.erase(frameMs_.begin());
     frameMs_.push_back(static_cast<float>(stats_.frameMs));

@@ -25,6 +25,7 @@ struct DriveSettings {
     double chromeShare = 0.096;    ///< of close vehicles' vertices, searched for themselves
     int chromeBounces = 1;         ///< chrome parts in a row that show close things
     Weather weather = Weather::dry;  ///< wet streets need `mirrors`
+    bool adapt = true;               ///< exposure follows the light around the viewer
 
     /// Whether details follow from a budget or an error instead of `quality`.
     bool governed() const {

@@ -17,6 +17,9 @@ struct FrameScene {
     std::vector<vehicles::VehiclePose> vehicles;
     std::vector<vehicles::SignalColour> signalColours;  ///< one per CityModel::signalHeads
     Lighting lighting;
+    /// Times the light's exposure, of all views: what the viewer's eye or camera has adapted to
+    /// (EyeAdaptation).
+    double adaptation = 1;
 };
 
 }  // namespace app

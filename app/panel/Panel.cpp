@@ -151,6 +151,7 @@ void Panel::Impl::drawSettings(const PanelNews& news, PanelChoices& choices) {
         hour = static_cast<float>(settings.hour);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("Another light needs other reference maps: this may take a while the first time.");
+    ImGui::Checkbox("exposure follows the light", &settings.adapt);
 
     if (settings.method == ReflectionMethod::mem && settings.mem == MemVariant::ours)
         drawBudget(news, settings);

@@ -32,6 +32,7 @@ SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::prepare(const FrameScene& scene) {
     impl_->lighting = scene.lighting;
+    impl_->adaptation = static_cast<float>(scene.adaptation);
     const float length = glm::length(scene.lighting.sunDirection);
     impl_->lighting.sunDirection = length > 0 ? scene.lighting.sunDirection / length : glm::vec3(0, 0, 1);
     impl_->poses = scene.vehicles;
@@ -65,7 +66,7 @@ void SceneRenderer::prepareForChanges(glm::ivec2 size) {
 
 bool SceneRenderer::drewLast(const View& view) const {
     return impl_->standing.drewLast({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size,
-                                    impl_->lighting);
+                                    impl_->exposed());
 }
 
 void SceneRenderer::drawView(const View& view, const VehicleReflections& reflections,
@@ -76,7 +77,7 @@ void SceneRenderer::drawView(const View& view, const VehicleReflections& reflect
     if (view.size.x <= 0 || view.size.y <= 0) return;
     my.updateShadow();
     setDrawState();
-    my.standing.begin({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size, my.lighting,
+    my.standing.begin({view.eye, view.clipFromView * view.viewFromWorld, 1}, view.size, my.exposed(),
                       my.viewTarget);
     my.viewTarget.begin(view.size, my.detail.scale);
     const float drawnShare = static_cast<float>(my.viewTarget.drawn().y) / static_cast<float>(view.size.y);

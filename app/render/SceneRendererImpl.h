@@ -75,11 +75,18 @@ struct SceneRenderer::Impl {
         uniforms.setEye(view.eye);
         uniforms.eyeLow.w = static_cast<float>(layer);
         uniforms.setFading(fading, glass);
-        uniforms.setLighting(lighting);
+        uniforms.setLighting(exposed());
         uniforms.setShadow(shadow.shadowFromWorld(), shadow.normalOffset());
         frameUniforms.replaceWith(uniforms);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameUniforms.name());
         shadow.texture().bind(1);
+    }
+
+    /// The light, with the exposure that the viewer has adapted to.
+    Lighting exposed() const {
+        Lighting shown = lighting;
+        shown.exposure *= adaptation;
+        return shown;
     }
 
     void updateShadow() {
@@ -158,6 +165,7 @@ struct SceneRenderer::Impl {
     CubeDestination cube;
 
     Lighting lighting;
+    float adaptation = 1;
     std::vector<vehicles::VehiclePose> poses;
     std::vector<vehicles::SignalColour> signalColours;
     std::vector<std::uint32_t> chosen;
