@@ -49,7 +49,7 @@ void measureCloseUp(const Options& options, CloseViews& views, const CloseUp& wh
                 "{}: {} jobs ({} open, {} too small, {} left out), {} pictures of {} texels in them, {} "
                 "meshes, {} vertices, {} searched, {} "
                 "triangles, {:.1f} ms ({:.1f} searching)",
-                what.name, c.jobs, plan.open, plan.tooSmall, plan.leftOut, c.pictures, c.pictureTexels,
+                what.name, c.jobs, plan.open, plan.tooSmall, plan.leftOut, c.bounces.pictures, c.bounces.texels,
                 c.meshes, c.vertices, c.searched, c.triangles, c.milliseconds, c.searchMilliseconds);
         }
         const std::string file = fileName(what, drawn.method);

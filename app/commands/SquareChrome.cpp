@@ -47,7 +47,7 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
     Progress progress("frames", cases.size() * (framesBefore + framesMeasured), options.quiet);
     for (const Case& what : cases) {
         std::vector<double> ms[2], ratio, more, searching, all, oneMap;
-        std::uint64_t jobs = 0, drawn = 0, vertices = 0, searched = 0, triangles = 0, pictures = 0;
+        std::uint64_t jobs = 0, drawn = 0, vertices = 0, searched = 0, triangles = 0, pictures = 0, picturesDrawn = 0;
         for (std::uint32_t i = 0; i < framesBefore + framesMeasured && !interrupted(); ++i) {
             View view = from;
             if (what.moves) view.eye += eyeStep * std::abs(static_cast<double>(i % 20) - 10) * right;
@@ -80,7 +80,8 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
                 vertices += c.vertices;
                 searched += c.searched;
                 triangles += c.triangles;
-                pictures += c.pictures;
+                pictures += c.bounces.pictures;
+                picturesDrawn += c.bounces.drawn;
                 searching.push_back(c.searchMilliseconds);
                 all.push_back(c.milliseconds);
             }
@@ -108,6 +109,7 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
                      {"jobs_drawn", perFrame(drawn)},
                      {"chrome_bounces", options.chromeBounces},
                      {"pictures", perFrame(pictures)},
+                     {"pictures_drawn", perFrame(picturesDrawn)},
                      {"vertices", perFrame(vertices)},
                      {"searched", perFrame(searched)},
                      {"triangles", perFrame(triangles)},
@@ -119,7 +121,7 @@ void measureChromeCost(const Options& options, PreparedScene& stage, const Close
                      {"frame_ms_without", toJson(timingOf(ms[0]))},
                      {"ratio_to_without", middle}});
         table.push_back({name + ": " + what.name + ": " + fixed(perFrame(searched) / 1000, 1) +
-                             "k searched, " + fixed(perFrame(pictures), 1) + " pictures, in " +
+                             "k searched, " + fixed(perFrame(pictures), 1) + " pictures (" + fixed(perFrame(picturesDrawn), 1) + " anew), in " +
                              fixed(timingOf(searching).median, 1) + " ms, " +
                              fixed(timingOf(more).median, 1) + " ms a frame; one map drawn: " +
                              (oneMap.empty() ? "-" : fixed(timingOf(oneMap).median, 1)) + " ms",

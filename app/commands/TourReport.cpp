@@ -61,7 +61,8 @@ void TourReport::add(const FrameStats& stats, const DriveSettings& settings, glm
     stretch->chromeMeshes += chrome.meshes;
     stretch->chromeSearched += chrome.searched;
     stretch->chromeDrawn += chrome.drawn;
-    stretch->chromePictures += chrome.pictures;
+    stretch->bounces.add(chrome.bounces);
+    stretch->bounceMs.push_back(chrome.bounces.milliseconds);
     stretch->chromeMs.push_back(chrome.milliseconds);
     raise(stretch->chromeReflectorBytes, stats.chromeBytes);
     raise(stretch->chromeTextureBytes, stats.drawn.chromeTextureBytes);
@@ -84,7 +85,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
     std::vector<std::vector<std::string>> table{{"method, quality, cars, size, hour", "frames", "ms: min",
                                                  "median", "max", "reflections", "maps a frame", "local maps",
                                                  "chrome jobs", "searches", "their ms"}};
-    std::string governed;
+    std::string governed, bounced;
     const Stretch* most = nullptr;  // memory
     for (const Stretch& stretch : stretches_) {
         const DriveSettings& settings = stretch.settings;
@@ -122,7 +123,30 @@ void TourReport::finish(bool partial, std::ostream& out) const {
         };
         row["chrome_jobs_per_frame"] = perFrame(stretch.chromeJobs);
         row["chrome_jobs_drawn_per_frame"] = perFrame(stretch.chromeDrawn);
-        row["chrome_pictures_per_frame"] = perFrame(stretch.chromePictures);
+        if (settings.chromeBounces > 1) {
+            const ChromeBounceCounts& b = stretch.bounces;
+            row["chrome_bounces"] = {{"bounces", settings.chromeBounces},
+                                     {"parts_per_frame", perFrame(b.parts)},
+                                     {"pictures_per_frame", perFrame(b.pictures)},
+                                     {"drawn_per_frame", perFrame(b.drawn)},
+                                     {"fading_per_frame", perFrame(b.fading)},
+                                     {"too_small_per_frame", perFrame(b.tooSmall)},
+                                     {"unseen_per_frame", perFrame(b.unseen)},
+                                     {"too_bent_per_frame", perFrame(b.tooBent)},
+                                     {"too_near_per_frame", perFrame(b.tooNear)},
+                                     {"over_cap_per_frame", perFrame(b.overCap)},
+                                     {"making_per_frame", perFrame(b.making)},
+                                     {"texels_per_frame", perFrame(b.texels)},
+                                     {"ms", toJson(timingOf(stretch.bounceMs))}};
+            bounced += "chrome seen in chrome: " + fixed(perFrame(b.parts), 1) + " parts a frame, " +
+                       fixed(perFrame(b.pictures), 1) + " in pictures (" + fixed(perFrame(b.drawn), 1) +
+                       " drawn anew, " + fixed(perFrame(b.pictures - std::min(b.drawn, b.pictures)), 1) +
+                       " kept); without: " + fixed(perFrame(b.tooSmall), 1) + " too small, " +
+                       fixed(perFrame(b.unseen), 1) + " not seen, " +
+                       fixed(perFrame(b.tooBent + b.tooNear), 1) + " too bent or too near, " +
+                       fixed(perFrame(b.overCap), 1) + " for want of room, " + fixed(perFrame(b.making), 1) +
+                       " being made; " + fixed(timingOf(stretch.bounceMs).median, 1) + " ms\n";
+        }
         row["chrome_reflector_bytes"] = stretch.chromeReflectorBytes;
         row["chrome_meshes_per_frame"] = perFrame(stretch.chromeMeshes);
         row["chrome_searched_per_frame"] = perFrame(stretch.chromeSearched);
@@ -154,7 +178,7 @@ void TourReport::finish(bool partial, std::ostream& out) const {
         results.add(std::move(row));
         if (most == nullptr || stretch.referenceMapBytes >= most->referenceMapBytes) most = &stretch;
     }
-    if (!stretches_.empty()) out << formatTable(table) << governed;
+    if (!stretches_.empty()) out << formatTable(table) << bounced << governed;
     if (most != nullptr && most->referenceMapBytes > 0)
         out << "reference maps: " << byteSize(static_cast<double>(most->referenceMapBytes)) << ", "
             << fixed(most->bytesPerTexel, 2) << " bytes a texel for colour and distance; "

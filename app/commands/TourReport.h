@@ -33,9 +33,10 @@ class TourReport {
         std::uint64_t mapsUpdated = 0;
         std::uint64_t localMapBytes = 0, referenceMapBytes = 0, referenceMapGpuBytes = 0;  ///< the most
         double bytesPerTexel = 0;
-        std::uint64_t chromeJobs = 0, chromeDrawn = 0, chromePictures = 0, chromeMeshes = 0,
+        std::uint64_t chromeJobs = 0, chromeDrawn = 0, chromeMeshes = 0,
                       chromeSearched = 0, chromeTextureBytes = 0, chromeReflectorBytes = 0;
-        std::vector<double> chromeMs;
+        ChromeBounceCounts bounces;  ///< of all frames
+        std::vector<double> chromeMs, bounceMs;
         std::vector<double> positions, predictedMs, errors;  ///< of governed frames
         double last = 0;
         std::vector<std::string> givenUp;  ///< a frame each

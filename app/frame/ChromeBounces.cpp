@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <optional>
@@ -122,6 +123,8 @@ ChromeBounces ChromeBouncePlanner::plan(const ChromePlan& plan, std::uint32_t vi
     reflection::ChromeTreeOptions how;
     how.leastPixels = options.leastPixels;
     how.mostTexels = options.mostTexels;
+    how.texelsPerPixel = options.texelsPerPixel;
+    how.pastDepth = false;
     how.search.thorough = false;
     const reflection::ChromeTree tree = reflection::chromeTree(view, size, parts, how);
     result.unseen = tree.counters.unseen;
@@ -150,6 +153,7 @@ ChromeBounces ChromeBouncePlanner::plan(const ChromePlan& plan, std::uint32_t vi
             bounce.size = node.size;
             bounce.pixels = node.pixels;
             bounce.middle = node.middle;
+            bounce.shift = node.shift;
             const glm::dmat3 turn(of.job.worldFromPart);
             const double shift = glm::dot(node.axis, glm::dvec3(of.job.worldFromPart[3]));
             bounce.axis = node.axis * turn;
@@ -171,6 +175,56 @@ ChromeBounces ChromeBouncePlanner::plan(const ChromePlan& plan, std::uint32_t vi
     }
     std::erase_if(result.pictures, [](const ChromeBounce& b) { return !(b.of.share > 0); });
     return result;
+}
+
+BounceName nameOf(const ChromePlan& plan, const ChromeBounce& bounce) {
+    const ChromeName &in = plan.jobs[bounce.in].name, &of = bounce.of.name;
+    return {in.vehicle, in.part,  in.wheel,       bounce.piece, of.vehicle,
+            of.part,    of.wheel, bounce.ofPiece, bounce.slice};
+}
+
+void ChromeBounceFades::follow(ChromeBounces& bounces, const ChromePlan& plan, std::uint32_t view,
+                               std::span<const vehicles::VehiclePose> poses, const CloseScene& scene) {
+    std::map<BounceName, ChromeBounce> now;
+    for (ChromeBounce& bounce : bounces.pictures) {
+        const BounceName name = nameOf(plan, bounce);
+        const auto was = before_.find(name);
+        const bool known = was != before_.end() || shown_.contains(plan.jobs[bounce.in].name);
+        const float share = was != before_.end() ? was->second.of.share : 0, wanted = bounce.of.share;
+        if (known) bounce.of.share = std::clamp(wanted, share - ChromeFades::step, share + ChromeFades::step);
+        bounce.fading = bounce.of.share != wanted;
+        now[name] = bounce;
+    }
+    for (auto& [name, left] : before_) {
+        if (now.contains(name) || !(left.of.share > ChromeFades::step)) continue;
+        const auto in = std::ranges::find_if(plan.jobs, [&, n = name](const ChromeJob& job) {
+            return job.view == view && job.name.vehicle == n[0] && job.name.part == n[1] &&
+                   job.name.wheel == n[2];
+        });
+        const auto of =
+            std::ranges::find_if(poses, [n = name](const vehicles::VehiclePose& p) { return p.id == n[4]; });
+        if (in == plan.jobs.end() || of == poses.end()) continue;
+        // Its picture goes with the part.
+        const auto number = static_cast<std::uint32_t>(of - poses.begin());
+        const ChromePart& part = scene.parts.of(of->model)[left.of.part];
+        ChromeJob job = chromePartAt(poses, scene.models, part, number, left.of.part, left.of.wheel,
+                                     ChromePlanOptions{}.closeRadii);
+        closeTo(job, poses, scene.models);
+        job.pixels = left.of.pixels;
+        job.share = left.of.share - ChromeFades::step;
+        const glm::dmat4 moved = job.worldFromPart * glm::inverse(left.of.worldFromPart);
+        left.view.eye = glm::dvec3(moved * glm::dvec4(left.view.eye, 1));
+        left.view.viewFromWorld = left.view.viewFromWorld * glm::transpose(glm::dmat3(moved));
+        left.of = std::move(job);
+        left.fading = true;
+        left.in = static_cast<std::uint32_t>(in - plan.jobs.begin());
+        bounces.pictures.push_back(left);
+        now[name] = left;
+    }
+    before_ = std::move(now);
+    shown_.clear();
+    for (const ChromeJob& job : plan.jobs)
+        if (job.view == view) shown_.insert(job.name);
 }
 
 }  // namespace app

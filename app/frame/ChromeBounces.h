@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -26,10 +28,17 @@ struct ChromeBounce {
     glm::ivec2 size{0};   ///< texels of its picture
     double pixels = 0;    ///< across, in the caller's view
     double middle = 0;    ///< see reflection::ChromeNode
+    double shift = 0;     ///< see reflection::ChromeNode
+    bool fading = false;  ///< on its way in or out
     glm::dvec3 axis{0};   ///< in the part's frame: the picture is for its points p with
     double low = -1e300;  ///< low <= dot(axis, p)
     double high = 1e300;  ///< < high
 };
+
+/// A picture, by what stays the same from frame to frame: vehicle, part, wheel and piece that show it; the
+/// same of what is shown; slice.
+using BounceName = std::array<std::uint32_t, 9>;
+BounceName nameOf(const ChromePlan& plan, const ChromeBounce& bounce);
 
 struct ChromeBounces {
     std::vector<ChromeBounce> pictures;  ///< the largest first
@@ -42,12 +51,28 @@ struct ChromeBounces {
     std::uint32_t making = 0;  ///< their reflectors are being made
 };
 
+/// Which bounces a frame before had, and with what shares, so that none changes by more than
+/// ChromeFades::step from one frame to the next, whatever the plan wants: what is new in a part that was
+/// there before comes in by steps, and what is planned no more goes out by steps, with the picture that it
+/// had. In a part that comes into sight itself all is there at once. Of one view.
+class ChromeBounceFades {
+  public:
+    /// Adds what still goes out to the plan's own pictures.
+    void follow(ChromeBounces& bounces, const ChromePlan& plan, std::uint32_t view,
+                std::span<const vehicles::VehiclePose> poses, const CloseScene& scene);
+
+  private:
+    std::map<BounceName, ChromeBounce> before_;
+    std::set<ChromeName> shown_;  ///< parts with jobs
+};
+
 struct ChromeBounceOptions {
     bool wait = true;  ///< for reflectors
     /// Pixels that a part must cover in another; its share is whole from twice as many on.
     double leastPixels = 24;
     std::uint32_t mostPictures = 6;
     int mostTexels = 512;  ///< of a picture's side
+    double texelsPerPixel = 1;
 };
 
 /// Decides for which chrome parts that are seen in others what they mirror is drawn: those of other vehicles

@@ -54,7 +54,7 @@ ChromeObject& ChromeObjects::object(Kept& job, std::size_t piece, std::uint64_t 
         virtualOptions.vertices.share = source.exact ? 1 : share;
         virtualOptions.vertices.search.thorough = false;
         o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, virtualOptions);
-        o.drawn = std::make_unique<reflection::gl::ChromeMesh>(source.attributes);
+        o.drawn.reset();
         o.lastTolerance = -1;
     }
     return o;
@@ -86,6 +86,13 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
                                                    const PassView& pass,
                                                    std::span<const vehicles::VehiclePose> poses,
                                                    const ChromeDrawing& options, ChromeCounts& counts) {
+    gather(plan, view, pass, poses, options, counts);
+    return search(options, counts);
+}
+
+void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const PassView& pass,
+                           std::span<const vehicles::VehiclePose> poses, const ChromeDrawing& options,
+                           ChromeCounts& counts) {
     ++frame_;
     shown_.clear();
     tasks_.clear();
@@ -177,6 +184,12 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
             }
         }
     }
+    for (auto& [key, kept] : kept_)
+        std::erase_if(kept.objects, [&](const auto& o) { return frame_ > o.second.used + framesKept; });
+    std::erase_if(kept_, [&](const auto& k) { return frame_ > k.second.used + framesKept; });
+}
+
+std::span<const ChromeShown> ChromeObjects::search(const ChromeDrawing& options, ChromeCounts& counts) {
     const auto searching = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, tasks_.size(), [&](std::size_t i) {
         Task& task = tasks_[i];
@@ -199,9 +212,6 @@ std::span<const ChromeShown> ChromeObjects::update(const ChromePlan& plan, std::
         counts.searched += task.object->changed ? task.object->counts.searched : 0;
         counts.triangles += task.object->mesh->indices().size() / 3;
     }
-    for (auto& [key, kept] : kept_)
-        std::erase_if(kept.objects, [&](const auto& o) { return frame_ > o.second.used + framesKept; });
-    std::erase_if(kept_, [&](const auto& k) { return frame_ > k.second.used + framesKept; });
     return shown_;
 }
 

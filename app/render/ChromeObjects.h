@@ -24,7 +24,7 @@ struct ChromeObject {
 
     const CloseMesh* source = nullptr;
     std::unique_ptr<reflection::VirtualMesh> mesh;
-    std::unique_ptr<reflection::gl::ChromeMesh> drawn;
+    std::unique_ptr<reflection::gl::ChromeMesh> drawn;  ///< made by who draws
     glm::dmat4 worldFromMesh{1};
     std::uint32_t vehicle = noVehicle;  ///< index into the frame's; none: of the city
     std::uint64_t used = 0;
@@ -57,6 +57,13 @@ class ChromeObjects {
     std::span<const ChromeShown> update(const ChromePlan& plan, std::uint32_t view, const PassView& pass,
                                         std::span<const vehicles::VehiclePose> poses,
                                         const ChromeDrawing& options, ChromeCounts& counts);
+    /// Its two parts: for several plans at once, first all are gathered, which lets go of what OpenGL holds
+    /// and so belongs to the thread that draws; searches may then run on any.
+    void gather(const ChromePlan& plan, std::uint32_t view, const PassView& pass,
+                std::span<const vehicles::VehiclePose> poses, const ChromeDrawing& options,
+                ChromeCounts& counts);
+    std::span<const ChromeShown> search(const ChromeDrawing& options, ChromeCounts& counts);
+    std::span<const ChromeShown> shown() const { return shown_; }
 
   private:
     /// How large things are in a piece.

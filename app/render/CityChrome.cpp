@@ -203,9 +203,10 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
     my.makeGlObjects();
     my.allocate(size);
     my.drawnSize = size;
-    ChromeCounts counts;
+    const bool ahead = my.searchedAhead.has_value();
+    ChromeCounts counts = std::exchange(my.searchedAhead, {}).value_or(ChromeCounts{});
     const std::span<const ChromeShown> shown =
-        my.objects.update(plan, view, pass, around.poses, options, counts);
+        ahead ? my.objects.shown() : my.objects.update(plan, view, pass, around.poses, options, counts);
     std::vector<Impl::Layer> layers;
     layers.reserve(shown.size());
     for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -243,6 +244,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         glDisable(GL_CULL_FACE);
         for (std::size_t k = 0; k < l.things.size(); ++k) {
             ChromeObject& o = *shown[i].objects[k];
+            if (!o.drawn) o.drawn = std::make_unique<gl::ChromeMesh>(o.source->attributes);
             if (o.stale) o.drawn->upload(*o.mesh, o.source->values);
             o.stale = false;
             my.drawThing(l.things[k], clipFromVirtual, glm::mat3(turn),

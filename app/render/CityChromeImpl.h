@@ -22,14 +22,11 @@ namespace gl = reflection::gl;
 
 enum class Drawing : std::uint8_t { solid, cutout, plain, map, parallax, count };
 
-/// A picture, by what stays the same from frame to frame: vehicle, part, wheel and piece that show it; the
-/// same of what is shown; slice.
-using PictureName = std::array<std::uint32_t, 9>;
-
 /// For CityChrome.cpp (parts and what is close to them) and CityChromeBounces.cpp (parts seen in parts).
 struct CityChrome::Impl {
     struct Programs;
     struct Picture;
+    struct Body;
     /// From where, and in which light.
     struct Seen {
         glm::dvec3 eye{0};
@@ -100,6 +97,8 @@ struct CityChrome::Impl {
                    const Surroundings& around);
 
     ChromeObjects objects;
+    /// Set: what the coming draw shows is in `objects` already, searched for with others.
+    std::optional<ChromeCounts> searchedAhead;
     std::vector<Layer> before;
     Seen seenBefore;
     std::optional<std::vector<reflection::LocalMapSlot>> skipped;  ///< maps that changed meanwhile
@@ -108,7 +107,9 @@ struct CityChrome::Impl {
     const CloseScene& scene;
     std::shared_ptr<Programs> programs;
     std::unique_ptr<ChromeBouncePlanner> planner;  ///< while there is more than one bounce
-    std::map<PictureName, std::unique_ptr<Picture>> pictures;
+    ChromeBounceFades fades;
+    std::map<BounceName, std::unique_ptr<Picture>> pictures;
+    std::map<BounceName, std::unique_ptr<Body>> seenBodies;  ///< of all slices: named as the first
     std::uint64_t frame = 0;
     std::optional<gl::ChromeLayer> bodies;
     bool alone = true;  ///< its image is taken up by place, not looked up: what is outside may be anything
@@ -126,25 +127,62 @@ struct CityChrome::Impl::Programs {
     gl::Program body;  ///< made with the first picture
 };
 
-/// What a piece of chrome seen in another mirrors, and where it is seen there.
+/// Where a piece of chrome is seen in another: one for all its slices.
+struct CityChrome::Impl::Body {
+    explicit Body(const reflection::ReflectorPiece& of) : piece(of) {}
+
+    /// Takes what of it may be seen in a ball around `centre`, in its own frame. Nothing while that is what
+    /// it has.
+    void face(const glm::dvec3& centre, double radius, double share);
+    /// Finds it where anything moved since; otherwise all stays.
+    void find(const reflection::ReflectorMap& in, const glm::dvec3& eye, const glm::dmat4& inFromPart,
+              const reflection::VirtualMeshOptions& options, bool keep);
+
+    const reflection::ReflectorPiece& piece;
+    std::vector<city::Vertex> vertices;  ///< its own, those that face the other
+    std::optional<reflection::VirtualMesh> mesh;
+    std::vector<glm::dvec3> from;  ///< where each vertex is seen in the other, in its own part's frame
+    std::size_t searched = 0;
+    std::uint64_t used = 0;
+    bool moved = true;  ///< since the call before
+
+    glm::dvec3 facedCentre{0};
+    double facedSlack = -1;
+    glm::dmat4 lastPlace{0};
+    glm::dvec3 lastEye{0};
+    double lastTolerance = -1;
+};
+
+/// What a piece of chrome seen in another mirrors.
 struct CityChrome::Impl::Picture {
     static constexpr std::uint64_t framesKept = 30;
+    /// Pixels by which a picture may be off because its eye has moved on.
+    static constexpr double mostOff = 1;
 
-    Picture(const CloseScene& scene, const std::shared_ptr<Programs>& shared,
-            const reflection::ReflectorPiece& of, double share);
+    Picture(const CloseScene& scene, const std::shared_ptr<Programs>& shared);
+
+    /// Pixels by which it would be off as this bounce's; infinite where it cannot serve.
+    double offAs(const ChromeBounce& now, const Surroundings& around, const ChromeDrawing& options,
+                 std::uint64_t frame) const;
+    /// Where each vertex of its body finds its light in the picture.
+    void look(const reflection::SearchOptions& search);
 
     std::unique_ptr<CityChrome> chrome;
-    const reflection::ReflectorPiece* piece = nullptr;
-    reflection::VirtualMesh mesh;
+    Body* body = nullptr;
     gl::ChromeMesh drawn;
-    ChromeBounce bounce;
-    std::uint64_t used = 0;
+    ChromeBounce bounce;  ///< as it was drawn for
+    ChromeBounce next;    ///< as it is wanted
+    float share = 0;
+    ChromePlan plan;                             ///< the bounce's job alone
+    std::vector<vehicles::VehiclePose> closeBy;  ///< when it was drawn
+    Lighting lighting;
+    ChromeDrawing options;  ///< with which it was drawn
+    std::uint64_t used = 0, drawnIn = 0;
     bool changed = true;  ///< since the frame before
 
-    /// What the image in the other part was found for.
-    glm::dmat4 lastPlace{0};
-    glm::dvec3 lastEye{0}, lastPictureEye{0};
-    double lastTolerance = -1;
+    glm::dvec3 eye{0};          ///< in the part's frame
+    std::vector<float> values;  ///< of the body's vertices
+    std::size_t searched = 0;
 };
 
 }  // namespace app

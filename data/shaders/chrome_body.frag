@@ -22,6 +22,8 @@ uniform vec3 slice;  // axis; the picture is for places between these two
 uniform vec2 sliceEnds;
 
 #ifdef CLOSE
+uniform float share;  // over what its map shows
+
 vec4 pictureAt(vec2 uv) {
     // Between texels, by what they hold.
     vec2 place = uv * vec2(textureSize(picture, 0)) - 0.5;
@@ -43,6 +45,7 @@ void main() {
     if (dot(d, n) >= 0.0 || along < sliceEnds.x || along >= sliceEnds.y) discard;
     vec4 clip = pictureFromRelative * vec4(at, 1.0);
     colourOut = pictureAt(clamp(0.5 + 0.5 * clip.xy / clip.w, vec2(0.0), vec2(1.0)) * pictureShare);
+    colourOut.a *= share;
 }
 #else
 float nearnessAlong(vec3 direction) {

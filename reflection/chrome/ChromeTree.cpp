@@ -166,7 +166,9 @@ ChromeLook Builder::look(ChromeNode& node, const BounceEye& bounce, double pixel
     for (const std::size_t k : bounce.seen)
         span = std::max(span, glm::length(glm::normalize(points[k].position - bounce.eye) - first));
     const double perRadian = pixels / std::max(span, 1e-9);
-    node.stray = perRadian * bounce.stray * strayOf(sight->distance, bend);
+    const double perRadianOff = perRadian * strayOf(sight->distance, bend);
+    node.stray = bounce.stray * perRadianOff;
+    node.shift = perRadianOff / sight->distance;
     const double texels = 2 * sight->half * perRadian * options_.texelsPerPixel;
     const int side = std::clamp(static_cast<int>(std::ceil(texels)), 8, options_.mostTexels);
     node.size = {side, side};
@@ -220,7 +222,8 @@ void Builder::grow() {
         if (tree_.counters.pictures >= options_.mostPictures) node.look = ChromeLook::overCap;
         const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
         put(node);
-        if (node.look == ChromeLook::picture)
+        const bool last = static_cast<int>(node.level) + 1 >= options_.depth;
+        if (node.look == ChromeLook::picture && (options_.pastDepth || !last))
             meet({number, node.view, node.size, node.level + 1}, node.of, node.ofPiece);
     }
 }

@@ -31,6 +31,8 @@ struct ChromeTreeOptions {
     /// Chrome parts in a row that show what is close to them where it is, 1 .. 8; 1: what one part shows of
     /// another has that one's map alone.
     int depth = 2;
+    /// What is met in the last pictures is looked at, too, and listed as tooDeep; false saves its searches.
+    bool pastDepth = true;
     /// Pixels that a part must cover in another to have a picture.
     double leastPixels = 6;
     /// Pixels by which what a part shows within another may be off because all of it is seen from one eye.
@@ -62,6 +64,7 @@ struct ChromeNode {
     glm::ivec2 size{0};  ///< texels; 0 without a picture
     double pixels = 0;   ///< that it covers in its parent's image, across
     double stray = 0;    ///< pixels by which the picture may be off
+    double shift = 0;    ///< pixels by which it is off besides for each metre that its eye stands elsewhere
     /// Metres from the seen part at which what it mirrors is where it belongs, whatever eye is in between.
     double middle = 0;
     glm::dvec3 axis{0};  ///< world: the picture is for those points p of the part with low <= axis . p < high

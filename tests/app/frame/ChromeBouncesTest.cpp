@@ -119,5 +119,43 @@ TEST(ChromeBounces, SharesGrowFromNothingAsTheEyeComesNear) {
     EXPECT_EQ(before, 1);
 }
 
+TEST(ChromeBounces, PicturesComeAndGoByStepsInWhatWasThereBefore) {
+    Balls balls({-1.5f, 1.5f});
+    ChromeBounceFades fades;
+    const auto shares = [&](bool planned) {
+        const ChromePlan jobs = balls.jobs();
+        ChromeBounces plan = planned ? balls.plan() : ChromeBounces{};
+        fades.follow(plan, jobs, 0, balls.frame.vehicles, *balls.scene);
+        float most = 0;
+        for (const ChromeBounce& b : plan.pictures) {
+            most = std::max(most, b.of.share);
+            EXPECT_LT(b.in, jobs.jobs.size());
+            EXPECT_LT(b.of.vehicle, balls.frame.vehicles.size());
+        }
+        return most;
+    };
+    // In what comes into sight all is there.
+    float before = shares(true);
+    EXPECT_EQ(before, 1);
+    int frames = 0;
+    for (; before > 1e-5f && frames < 100; ++frames) {
+        // What is shown goes with its part.
+        for (vehicles::VehiclePose& pose : balls.frame.vehicles) pose.position.x += 0.01;
+        const float now = shares(false);
+        EXPECT_NEAR(now, before - ChromeFades::step, 1e-5) << frames;
+        before = now;
+    }
+    EXPECT_EQ(frames, 12);
+    for (int k = 0; k < 12; ++k) {
+        const float now = shares(true);
+        EXPECT_NEAR(now, before + ChromeFades::step, 1e-5) << k;
+        before = now;
+    }
+    EXPECT_EQ(shares(true), 1);
+    // Nothing is left of a part that is gone.
+    balls.frame.vehicles.pop_back();
+    EXPECT_EQ(shares(false), 0);
+}
+
 }  // namespace
 }  // namespace app

@@ -344,8 +344,8 @@ TEST_F(CityChromeBouncesGlTest, aBallSeenInAnotherMirrorsWhatIsCloseToIt) {
         drawing.bounces = bounces;
         const std::vector<glm::vec3> image = draw(maps, &chrome, drawing);
         const ChromeCounts& counts = renderer_->counters().chrome;
-        EXPECT_EQ(counts.pictures, bounces == 1 ? 0u : bounces == 2 ? 2u : counts.pictures);
-        EXPECT_EQ(counts.picturesDrawn, counts.pictures);
+        EXPECT_EQ(counts.bounces.pictures, bounces == 1 ? 0u : bounces == 2 ? 2u : counts.bounces.pictures);
+        EXPECT_EQ(counts.bounces.drawn, counts.bounces.pictures);
         const reflection::ImageView a{size.x, size.y, image}, b{size.x, size.y, truth};
         errors[static_cast<std::size_t>(bounces)] = reflection::meanError(reflection::flip(a, b), mask);
         RecordProperty("flip_" + std::to_string(bounces),
@@ -368,15 +368,15 @@ TEST_F(CityChromeBouncesGlTest, picturesStayWhileNothingMovesAndGoOnWhenItDoes) 
     ChromeDrawing two, one;
     two.bounces = 2;
     const std::vector<glm::vec3> before = draw(maps, &first, two);
-    EXPECT_EQ(counts().pictures, 2u);
+    EXPECT_EQ(counts().bounces.pictures, 2u);
     EXPECT_EQ(draw(maps, &first, two), before);
-    EXPECT_EQ(counts().pictures, 2u);
-    EXPECT_EQ(counts().picturesDrawn, 0u);
+    EXPECT_EQ(counts().bounces.pictures, 2u);
+    EXPECT_EQ(counts().bounces.drawn, 0u);
     EXPECT_EQ(counts().drawn, 0u);
     EXPECT_EQ(counts().searched, 0u);
     // With one bounce, and back.
     const std::vector<glm::vec3> plain = draw(maps, &first, one);
-    EXPECT_EQ(counts().pictures, 0u);
+    EXPECT_EQ(counts().bounces.pictures, 0u);
     EXPECT_NE(plain, before);
     EXPECT_EQ(draw(maps, &first, two), before);
     // The car in the right ball moves: as if all were drawn anew.
@@ -384,7 +384,7 @@ TEST_F(CityChromeBouncesGlTest, picturesStayWhileNothingMovesAndGoOnWhenItDoes) 
     renderer_->prepare(frame_);
     const ChromePlan moved = planned();
     const std::vector<glm::vec3> after = draw(maps, &moved, two);
-    EXPECT_GT(counts().picturesDrawn, 0u);
+    EXPECT_GT(counts().bounces.drawn, 0u);
     EXPECT_NE(after, before);
     maps.renewed.reset();
     EXPECT_EQ(draw(maps, &moved, two), after);
