@@ -3,8 +3,8 @@
 #include "chrome_result.glsl"
 
 // Reflection points on a convex piece, an invocation a vertex (ReflectionSearch.cpp's searchPackets;
-// the quick descents before it give the same answers without the test for hidden vertices, which packets gain from and
-// invocations do not). Compiled twice: in
+// QuickSearch-inl.h's descents before it give the same answers without the test for hidden vertices, which packets gain
+// from and invocations do not). Compiled twice: in
 // float for all vertices; in double (REAL_IS_DOUBLE) for those that float does not settle. What neither settles is left
 // to chrome_search_thorough.comp.
 
@@ -13,6 +13,8 @@ layout(local_size_x = 64) in;
 #ifdef REAL_IS_DOUBLE
 const uint nextList = 1u, perGroup = 1u;
 const real enough = 1e-14lf, still = 1e-16lf;
+/// ReflectionSearch.cpp's rimTolerance, squared: where the part has a rim.
+const real enoughAtRims = 1e-24lf;
 const int mostLookups = 40;
 #else
 const uint nextList = 0u, perGroup = 64u;
@@ -86,11 +88,12 @@ void search(uint index) {
         if (deepest.error < best.error) best = deepest;
     }
 #ifdef REAL_IS_DOUBLE
-    best = descend(eye, vertex, best, true, enough, still, mostLookups);
+    real until = hasCovered != 0u ? enoughAtRims : enough;
+    best = descend(eye, vertex, best, true, until, still, mostLookups);
     bool settled = best.error <= enough;
     if (!settled && hasCovered != 0u) {
         // What has run into the closing surface's creases starts once more, from the part itself.
-        Judged again = descend(eye, vertex, judge(eye, vertex, startFromTable(vertex, 1u), true), true, enough, still,
+        Judged again = descend(eye, vertex, judge(eye, vertex, startFromTable(vertex, 1u), true), true, until, still,
                                mostLookups);
         if (again.error <= enough && again.error < best.error) {
             best = again;

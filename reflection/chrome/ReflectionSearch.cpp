@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+#include "reflection/chrome/QuickSearch-inl.h"
 #include "reflection/chrome/SearchLanes-inl.h"
 #include "reflection/chrome/SearchStart-inl.h"
 #include "reflection/chrome/ThoroughSearch.h"
@@ -18,97 +19,9 @@ HWY_BEFORE_NAMESPACE();
 namespace reflection {
 namespace HWY_NAMESPACE {
 
-/// Most lanes of doubles that any instruction set here has.
-constexpr std::size_t mostLanes = 64 / sizeof(double);  // 512 bits
-
-/// A vector of points, filled and read one by one.
-struct Points {
-    HWY_ALIGN std::array<double, mostLanes> x{}, y{}, z{};
-
-    void set(std::size_t lane, const glm::dvec3& p) { x[lane] = p.x, y[lane] = p.y, z[lane] = p.z; }
-    glm::dvec3 get(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
-    HWY_INLINE Num3 load() const {
-        const Doubles d;
-        return {{hn::Load(d, x.data())}, {hn::Load(d, y.data())}, {hn::Load(d, z.data())}};
-    }
-    HWY_INLINE void store(const Num3& p) {
-        const Doubles d;
-        hn::Store(p.x.v, d, x.data());
-        hn::Store(p.y.v, d, y.data());
-        hn::Store(p.z.v, d, z.data());
-    }
-};
-
-struct Values {
-    HWY_ALIGN std::array<double, mostLanes> at{};
-    HWY_INLINE void store(Num n) { hn::Store(n.v, Doubles(), at.data()); }
-};
-
-/// Cosine between normal and line of sight below which what has arrived is asked all the same: there rounding
-/// tells.
-constexpr double surelyFaces = 1e-3;
-
-/// Convex pieces, first round: descents from the guesses, or where there are none (empty, or not a number)
-/// from a start of its own. A point before whose tangent plane eye and vertex both lie shows that a convex
-/// body does not stand between them, so what arrives is answered. Returns how many are not; which goes to
-/// `rest`. Everything in the map's frame and units.
-std::size_t searchQuickly(const ReflectorMap& map, const glm::dvec3& eye,
-                          std::span<const glm::dvec3> vertices, std::span<const glm::dvec3> guesses,
-                          std::span<ReflectionPoint> points, std::span<std::uint32_t> rest,
-                          const SearchOptions& options, int lookupsEach) {
-    const Doubles tag;
-    const std::size_t lanes = hn::Lanes(tag);
-    const EyeSide eyeSide(map, eye);
-    const Num3 eyes = num3(eye);
-    const Stretch stretch(map);
-    SearchOptions quick = options;
-    quick.lookups = std::min(options.lookups, lookupsEach);
-    std::size_t left = 0;
-    for (std::size_t first = 0; first < vertices.size(); first += lanes) {
-        const std::size_t n = std::min(lanes, vertices.size() - first);
-        Points vertex;
-        for (std::size_t k = 0; k < lanes; ++k) vertex.set(k, vertices[first + std::min(k, n - 1)]);
-        const Num3 v = vertex.load();
-        Num3 start;
-        MD own = num(0) < num(1);
-        if (!guesses.empty()) {
-            Points guess;
-            for (std::size_t k = 0; k < lanes; ++k) guess.set(k, guesses[first + std::min(k, n - 1)]);
-            start = stretch.takeOut(guess.load());
-            own = hn::Not(dot(start, start) > num(0));
-        }
-        if (!hn::AllFalse(tag, own)) {
-            const Num3 made = startFor(map, eyeSide, v);
-            start = guesses.empty() ? made : choose(own, made, start);
-        }
-        const MD open = hn::Not(surelyEnters(map, stretch.takeOut(eyes), stretch.takeOut(v)));
-        const Descent descent = descend(map, eyes, v, judge(map, eyes, v, start, true), open, quick, true);
-        Points at, up;
-        Values path, error, lookups;
-        const Num3 toEye = eyes - descent.best.point, toVertex = v - descent.best.point;
-        at.store(descent.best.point);
-        up.store(descent.best.normal);
-        path.store(root(dot(toEye, toEye)) + root(dot(toVertex, toVertex)));
-        const MD faces = dot(toEye, descent.best.normal) > num(surelyFaces) * root(dot(toEye, toEye));
-        error.store(choose(hn::And(open, faces), descent.best.error, num(2)));
-        lookups.store(descent.lookups);
-        for (std::size_t k = 0; k < n; ++k) {
-            ReflectionPoint& r = points[first + k];
-            r.lookups = static_cast<std::uint8_t>(r.lookups + lookups.at[k]);
-            r.point = at.get(k);
-            // The sine is the angle to 1e-21.
-            r.residual = std::sqrt(error.at[k]);
-            if (!(r.residual <= options.tolerance)) {
-                rest[left++] = static_cast<std::uint32_t>(first + k);
-                continue;
-            }
-            r.normal = up.get(k);
-            r.path = path.at[k];
-            r.status = map.covered(r.point) ? ReflectionStatus::found : ReflectionStatus::unreflected;
-        }
-    }
-    return left;
-}
+/// Where the part has a rim, descents go on to this residual, radians: which side of it a point ends on then
+/// does not hang on where they began.
+constexpr double rimTolerance = 1e-12;
 
 /// Convex pieces, second round. What has no answer here comes back outOfSteps. Everything in the map's frame
 /// and units. data/shaders/chrome_search.comp and chrome_map.glsl do the same: whoever changes a step here or
@@ -120,9 +33,11 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
     const EyeSide eyeSide(map, eye);
     const Num3 eyes = num3(eye);
     const Stretch stretch(map);
+    SearchOptions patient = options;
+    if (!map.closed()) patient.tolerance = std::min(options.tolerance, rimTolerance);
     for (std::size_t first = 0; first < vertices.size(); first += lanes) {
         const std::size_t n = std::min(lanes, vertices.size() - first);
-        Points vertex;
+        Values3 vertex;
         for (std::size_t k = 0; k < lanes; ++k) vertex.set(k, vertices[first + std::min(k, n - 1)]);
         const Num3 v = vertex.load();
         const MD all = num(0) < num(1);
@@ -135,7 +50,7 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             const Judged deepest = judge(map, eyes, v, stretch.takeOut(eyes + entry.at * (v - eyes)), true);
             judged = choose(deepest.error < judged.error, deepest, judged);
         }
-        const Descent descent = descend(map, eyes, v, judged, visible, options, true);
+        const Descent descent = descend(map, eyes, v, judged, visible, patient, true);
 
         Num3 point = descent.best.point, normal = descent.best.normal;
         if (!hn::AllFalse(tag, entry.enters)) {
@@ -145,7 +60,7 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             point = choose(entry.enters, met, point);
             normal = choose(entry.enters, (num(1) / root(dot(m, m))) * m, normal);
         }
-        Points at, up, again;
+        Values3 at, up, again;
         Values path, error, lookups, hidden, retried;
         MD failed = hn::And(visible, descent.best.error > num(options.tolerance * options.tolerance));
         if (!map.coveredNormalTable().empty() && !hn::AllFalse(tag, failed)) {
@@ -153,7 +68,7 @@ void searchPackets(const ReflectorMap& map, const glm::dvec3& eye, std::span<con
             // descent reaches the reflection point that is there, or leaves the part as well.
             const Descent other = descend(
                 map, eyes, v, judge(map, eyes, v, startFromTable(map.coveredNormalTable(), eyeSide, v), true),
-                failed, options, true);
+                failed, patient, true);
             const MD better = hn::And(failed, other.best.error < descent.best.error);
             const MD arrived =
                 hn::And(better, other.best.error <= num(options.tolerance * options.tolerance));
@@ -201,7 +116,7 @@ void descendFrom(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec
     const std::size_t lanes = hn::Lanes(tag);
     for (std::size_t first = 0; first < starts.size(); first += lanes) {
         const std::size_t n = std::min(lanes, starts.size() - first);
-        Points start, point, normal;
+        Values3 start, point, normal;
         Values error;
         for (std::size_t k = 0; k < lanes; ++k) start.set(k, starts[first + std::min(k, n - 1)]);
         const Descent descent =
@@ -255,16 +170,6 @@ bool finite(const glm::dvec3& p) {
 /// Radians that a point may be off where it is not searched for thoroughly: a pixel in any picture.
 constexpr double nearEnough = 1e-3;
 
-/// Residual, radians, beyond which a vertex that has not arrived is asked at once whether it is hidden.
-constexpr double farOff = 0.3;
-
-/// Lookups of the first two descents, before it is known whether the reflector hides the vertex: what has
-/// arrived by then needs no test. Most arrive in the first, from near by in two.
-constexpr int firstLookups = 4, nextLookups = 6;
-/// Where the part has a rim there is one descent: its steps are the graphics card's, and so is the side of
-/// the rim on which a point within the tolerance of it ends.
-constexpr int onlyLookups = 7;
-
 /// So many vertices are brought to the map's frame at a time.
 constexpr std::size_t block = 256;
 
@@ -281,62 +186,38 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
     const bool convex = map.bend() == Bend::convex;
     // From inside nothing is reflected: the eye sees the surface's back.
     const bool inside = convex && !(map.sample(mapEye).gauge > 1);
-    std::array<glm::dvec3, block> moved, guessed, others;
+    std::array<glm::dvec3, block> moved, guessed;
     std::array<std::uint32_t, block> rest;
     std::array<ReflectionPoint, block> answers;
     for (std::size_t first = 0; first < vertices.size(); first += block) {
         const std::size_t n = std::min(block, vertices.size() - first);
+        const std::span<const glm::dvec3> in = vertices.subspan(first, n);
         const std::span<ReflectionPoint> out = points.subspan(first, n);
-        for (std::size_t k = 0; k < n; ++k) {
-            const glm::dvec3& v = vertices[first + k];
-            moved[k] = finite(v) ? map.frame().toMap(v) : mapEye;
-        }
+        std::size_t left = n;
         if (convex && !inside) {
             std::span<const glm::dvec3> from;
             if (!guesses.empty()) {
                 for (std::size_t k = 0; k < n; ++k) guessed[k] = map.frame().toMap(guesses[first + k]);
                 from = std::span(guessed).first(n);
             }
-            for (ReflectionPoint& r : out) r.lookups = 0;
-            std::size_t left =
-                HWY_DYNAMIC_DISPATCH(searchQuickly)(map, mapEye, std::span(moved).first(n), from, out, rest,
-                                                    options, map.closed() ? firstLookups : onlyLookups);
-            // Those that are on their way go on together, so that packets do not wait for their last vertex;
-            // the others are hidden, most of them.
-            std::array<std::uint32_t, block> going, stayed;
-            std::size_t go = 0, stay = 0;
-            for (std::size_t k = 0; k < left; ++k) {
-                const ReflectionPoint& r = out[rest[k]];
-                if (map.closed() && r.residual < farOff) {
-                    others[go] = moved[rest[k]];
-                    guessed[go] = r.point;
-                    answers[go].lookups = r.lookups;
-                    going[go++] = rest[k];
-                } else {
-                    stayed[stay++] = rest[k];
-                }
-            }
-            if (go > 0) {
-                left = HWY_DYNAMIC_DISPATCH(searchQuickly)(
-                    map, mapEye, std::span(others).first(go), std::span(guessed).first(go),
-                    std::span(answers).first(go), rest, options, nextLookups);
-                for (std::size_t k = 0; k < go; ++k) out[going[k]] = answers[k];
-                for (std::size_t k = 0; k < left; ++k) stayed[stay++] = going[rest[k]];
-            }
-            for (std::size_t k = 0; k < stay; ++k) {
-                others[k] = moved[stayed[k]];
-                answers[k].lookups = out[stayed[k]].lookups;
-            }
-            HWY_DYNAMIC_DISPATCH(searchPackets)
-            (map, mapEye, std::span(others).first(stay), std::span(answers).first(stay), options);
-            for (std::size_t k = 0; k < stay; ++k) out[stayed[k]] = answers[k];
+            left = HWY_DYNAMIC_DISPATCH(searchQuickly)(map, mapEye, from, in, out, rest, options);
+        } else {
+            for (std::size_t k = 0; k < n; ++k) rest[k] = static_cast<std::uint32_t>(k);
         }
-        for (std::size_t k = 0; k < n; ++k) {
-            ReflectionPoint& r = out[k];
-            if (!finite(vertices[first + k])) {
+        for (std::size_t k = 0; k < left; ++k) {
+            const glm::dvec3& v = in[rest[k]];
+            moved[k] = finite(v) ? map.frame().toMap(v) : mapEye;
+            answers[k].lookups = convex && !inside ? out[rest[k]].lookups : std::uint8_t{0};
+        }
+        if (convex && !inside) HWY_DYNAMIC_DISPATCH(searchPackets)
+        (map, mapEye, std::span(moved).first(left), std::span(answers).first(left), options);
+        for (std::size_t k = 0; k < left; ++k) {
+            ReflectionPoint& r = out[rest[k]];
+            if (!finite(in[rest[k]])) {
                 r = {};
                 continue;
             }
+            r = answers[k];
             if (inside) {
                 const ReflectorMap::Sample under = map.sample(mapEye);
                 r = {under.position,

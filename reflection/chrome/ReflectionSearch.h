@@ -22,21 +22,21 @@ struct SearchOptions {
 /// Finds where the eye sees each vertex in the reflector. A point is one where the bisector of the directions
 /// to eye and vertex is the normal; Newton steps on the bisector's part along the surface, each kept only if
 /// the angle shrinks and halved otherwise, from the surface's point of the bisector seen from the centre or,
-/// for vertices close to the surface, from the mirror point of the tangent plane under them. What arrives in
-/// a few steps is not hidden; of the others, hidden ones are told first: the distance function of a convex
-/// body is convex along the line of sight, so its tangents bracket the line's deepest point. What does not
-/// converge is searched for on a lattice of starting points, so every vertex gets a status and none is
-/// `outOfSteps`. On concave pieces the point with the shortest path is given: for all,
-/// findAllReflectionPoints.
+/// for vertices close to the surface, from the mirror point of the tangent plane under them. In floats first,
+/// then a step in doubles. What arrives is not hidden; of the others, hidden ones are told first: the
+/// distance function of a convex body is convex along the line of sight, so its tangents bracket the line's
+/// deepest point. What does not converge is searched for on a lattice of starting points, so every vertex
+/// gets a status and none is `outOfSteps`. On concave pieces the point with the shortest path is given: for
+/// all, findAllReflectionPoints.
 ///
 /// `guesses`: empty, or for each vertex a point near its reflection point (the last frame's, a neighbour's)
 /// from where to start, not a number for none. On convex pieces they change how long it takes, not what comes
 /// out; on concave ones they are not looked at.
 ///
-/// `points` must have room for all vertices. Frame: the reflector's, metres. Cost: about seven lookups of the
-/// map a vertex, eight vertices at a time in double precision where the processor has AVX-512. Source:
-/// Estalella et al. 2005, sections 4.2 to 6.1; error function and its descent are the paper's, steps and
-/// safeguards are not.
+/// `points` must have room for all vertices. Frame: the reflector's, metres. Cost: three to six lookups of
+/// the map a vertex in floats, sixteen vertices at a time where the processor has AVX-512, and two in
+/// doubles, eight at a time. Source: Estalella et al. 2005, sections 4.2 to 6.1; error function and its
+/// descent are the paper's, steps and safeguards are not.
 void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                           std::span<const glm::dvec3> vertices, std::span<ReflectionPoint> points,
                           const SearchOptions& options = {}, std::span<const glm::dvec3> guesses = {});

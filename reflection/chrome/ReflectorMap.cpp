@@ -64,7 +64,7 @@ ReflectorMap::ReflectorMap(int cellsPerSide, Bend bend, const MapFrame& frame, s
     balls = SurfacePatches(*this);
 }
 
-bool ReflectorMap::coveredAt(const glm::dvec3& direction) const {
+double ReflectorMap::coveredShare(const glm::dvec3& direction) const {
     const FacePoint at = facePointOf(direction / place.stretch);
     const double x = (at.s + 1) * 0.5 * cells, y = (at.t + 1) * 0.5 * cells;
     const int column = std::clamp(static_cast<int>(x), 0, cells - 1);
@@ -73,8 +73,7 @@ bool ReflectorMap::coveredAt(const glm::dvec3& direction) const {
     const std::size_t first = cornerIndex(cells, static_cast<int>(at.face), column, row);
     const std::size_t below = first + static_cast<std::size_t>(cells + 1);
     return (1 - v) * ((1 - u) * own[first] + u * own[first + 1]) +
-               v * ((1 - u) * own[below] + u * own[below + 1]) >=
-           0.5;
+           v * ((1 - u) * own[below] + u * own[below + 1]);
 }
 
 ReflectorMap::Sample ReflectorMap::sample(const glm::dvec3& direction) const {

@@ -77,7 +77,9 @@ class ReflectorMap {
     /// corners.
     Sample sample(const glm::dvec3& direction) const;
     /// Whether the part itself (not its closing surface) is seen in a direction.
-    bool covered(const glm::dvec3& direction) const { return whole || coveredAt(direction); }
+    bool covered(const glm::dvec3& direction) const { return whole || coveredShare(direction) >= 0.5; }
+    /// Share of a direction's four corners, as they are blended, that the part itself covers.
+    double coveredShare(const glm::dvec3& direction) const;
     /// The part covers every direction: there is no closing surface.
     bool closed() const { return whole; }
 
@@ -122,7 +124,6 @@ class ReflectorMap {
     static glm::dvec3 cornerPoint(int cells, int face, int column, int row);
 
   private:
-    bool coveredAt(const glm::dvec3& direction) const;
     std::vector<glm::vec3> indexNormals(bool coveredOnly) const;
     void findRadii();
     void findRim();

@@ -13,94 +13,151 @@ HWY_BEFORE_NAMESPACE();
 namespace reflection {
 namespace HWY_NAMESPACE {
 
+/// Most lanes of doubles that any instruction set here has.
+constexpr std::size_t mostDoubles = 64 / sizeof(double);  // 512 bits
+
+/// A vector of points, filled and read one by one.
+struct Values3 {
+    HWY_ALIGN std::array<double, mostDoubles> x{}, y{}, z{};
+
+    void set(std::size_t lane, const glm::dvec3& p) { x[lane] = p.x, y[lane] = p.y, z[lane] = p.z; }
+    glm::dvec3 get(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+    HWY_INLINE Num3 load() const {
+        const Doubles d;
+        return {{hn::Load(d, x.data())}, {hn::Load(d, y.data())}, {hn::Load(d, z.data())}};
+    }
+    HWY_INLINE void store(const Num3& p) {
+        const Doubles d;
+        hn::Store(p.x.v, d, x.data());
+        hn::Store(p.y.v, d, y.data());
+        hn::Store(p.z.v, d, z.data());
+    }
+};
+
+struct Values {
+    HWY_ALIGN std::array<double, mostDoubles> at{};
+    HWY_INLINE void store(Num n) { hn::Store(n.v, Doubles(), at.data()); }
+};
+
 /// Farthest that one step may go along either axis of a face (a face is 2 wide): a Newton step from far away
 /// is only a direction.
 constexpr double longestStep = 0.5;
 
 /// How far a point of the surface is from being the reflection point, and the step that Newton's method asks
 /// for.
-struct Judged {
-    Num error;    ///< squared sine of the angle between bisector and normal; 2 - it beyond a right angle
-    Num3 step;    ///< to add to the direction, which lies on the cube
-    Num3 onCube;  ///< the direction (stretch taken out), brought to the cube
-    Num3 point, normal;
-    Num path;
+template <class T>
+struct JudgedOf {
+    Real<T> error;    ///< squared sine of the angle between bisector and normal; 2 - it beyond a right angle
+    Real3<T> step;    ///< to add to the direction, which lies on the cube
+    Real3<T> onCube;  ///< the direction (stretch taken out), brought to the cube
+    Real3<T> point, normal;
+    Real<T> path;
+};
+using Judged = JudgedOf<double>;
+
+/// What eye and vertex see at a point of the surface.
+template <class T>
+struct Sight {
+    Real3<T> o, v, h, across;  ///< unit vectors to eye and vertex, their sum, and its part along the surface
+    Real<T> perEye, perVertex, path, along;  ///< `along`: h's part along the normal
+    Real<T> error;
+
+    HWY_INLINE Sight(const Real3<T>& eye, const Real3<T>& vertex, const Real3<T>& p, const Real3<T>& n) {
+        const Real<T> one = real<T>(1), zero = real<T>(0), tiny = real<T>(tinyOf<T>);
+        const Real3<T> toEye = eye - p, toVertex = vertex - p;
+        const Real<T> eyeDistance = root(dot(toEye, toEye)), vertexDistance = root(dot(toVertex, toVertex));
+        perEye = one / most(eyeDistance, tiny), perVertex = one / most(vertexDistance, tiny);
+        o = perEye * toEye, v = perVertex * toVertex;
+        h = o + v;
+        along = dot(h, n);
+        across = h - along * n;
+        const Real<T> squaredSine = least(dot(across, across) / most(dot(h, h), tiny), one);
+        error = choose(along > zero, squaredSine, real<T>(2) - squaredSine);
+        path = eyeDistance + vertexDistance;
+    }
 };
 
 /// `direction` has the stretch taken out, everything else is in the map's frame.
-/// The step follows from f = (h . T1, h . T2), h = o + v the sum of the unit vectors to eye and vertex, T1,
-/// T2 orthonormal and tangent: f is zero where the bisector is the normal. Its change along the surface is
-/// that of h less (h . N) times that of N; what is left out (how the tangents turn in their plane) is f times
-/// a rotation and vanishes at the solution, so the convergence stays quadratic.
-HWY_INLINE Judged judge(const ReflectorMap& map, const Num3& eye, const Num3& vertex, const Num3& direction,
-                        bool convex) {
-    const Num one = num(1), zero = num(0);
-    const OnCube at = onCube(direction);
-    const Surface surface = surfaceAt(map, at);
+/// The step follows from f = (h . A, h . B), h = o + v the sum of the unit vectors to eye and vertex, A and B
+/// the parts along the surface of its change with s and t: f is zero where the bisector is the normal. Its
+/// change along the surface is that of h less (h . N) times that of N; what is left out (how A and B change)
+/// is h's part along the surface times a matrix and vanishes at the solution, so the convergence stays
+/// quadratic.
+template <class T>
+HWY_INLINE JudgedOf<T> judge(const ReflectorMap& map, const Real3<T>& eye, const Real3<T>& vertex,
+                             const Real3<T>& direction, bool convex) {
+    const LanesOf<T> tag;
+    const Real<T> one = real<T>(1), zero = real<T>(0);
+    const double endless = sizeof(T) == 8 ? 1e100 : 1e30;
+    const OnCubeOf<T> at = onCube(direction);
+    const SurfaceOf<T> surface = surfaceAt(map, at);
     // Out of the face's frame; positions are stretched, normals the other way.
-    const Stretch stretch(map);
-    const Num3 g{at.s, at.t, one};
-    const Num t = one / surface.q;
-    const Num3 flat = t * g;
-    const Num3 p = stretch.positions(at.axes.out(flat));
-    const Num3 pS = stretch.positions(at.axes.out(t * (Num3{one, zero, zero} - surface.qS * flat)));
-    const Num3 pT = stretch.positions(at.axes.out(t * (Num3{zero, one, zero} - surface.qT * flat)));
-    const Num3 m = stretch.normals(at.axes.out(surface.m));
-    const Num3 mS = stretch.normals(at.axes.out(surface.mS)), mT = stretch.normals(at.axes.out(surface.mT));
-    const Num inverseLength = one / root(dot(m, m));
-    const Num3 n = inverseLength * m;
+    const StretchOf<T> stretch(map);
+    const Real3<T> g{at.s, at.t, one};
+    const Real<T> t = one / surface.q;
+    const Real3<T> flat = t * g;
+    const Real3<T> p = stretch.positions(at.axes.out(flat));
+    const Real3<T> pS = stretch.positions(at.axes.out(t * (Real3<T>{one, zero, zero} - surface.qS * flat)));
+    const Real3<T> pT = stretch.positions(at.axes.out(t * (Real3<T>{zero, one, zero} - surface.qT * flat)));
+    const Real3<T> m = stretch.normals(at.axes.out(surface.m));
+    const Real3<T> mS = stretch.normals(at.axes.out(surface.mS)),
+                   mT = stretch.normals(at.axes.out(surface.mT));
+    const Real<T> inverseLength = one / root(dot(m, m));
+    const Real3<T> n = inverseLength * m;
+    const Sight<T> sight(eye, vertex, p, n);
 
-    const Num3 toEye = eye - p, toVertex = vertex - p;
-    const Num eyeDistance = root(dot(toEye, toEye)), vertexDistance = root(dot(toVertex, toVertex));
-    const Num tiny = num(1e-300);
-    const Num perEye = one / most(eyeDistance, tiny), perVertex = one / most(vertexDistance, tiny);
-    const Num3 o = perEye * toEye, v = perVertex * toVertex;
-    const Num3 h = o + v;
-    const Num along = dot(h, n);
-
-    const Num3 acrossS = pS - dot(pS, n) * n;
-    const Num sLength = root(dot(acrossS, acrossS));
-    const Num3 t1 = (one / most(sLength, tiny)) * acrossS;
-    const Num3 t2 = cross(n, t1);
-    const Num f1 = dot(h, t1), f2 = dot(h, t2);
-    const Num hh = most(dot(h, h), tiny);
-    const Num squaredSine = least(fma(f1, f1, f2 * f2) / hh, one);
-    const Num error = choose(along > zero, squaredSine, num(2) - squaredSine);
-
-    const auto change = [&](const Num3& slope, const Num3& normalSlope, Num& first, Num& second) {
-        const Num3 turn = perEye * (dot(o, slope) * o - slope) + perVertex * (dot(v, slope) * v - slope);
-        const Num bend = along * inverseLength;
-        first = dot(t1, turn) - bend * dot(t1, normalSlope);
-        second = dot(t2, turn) - bend * dot(t2, normalSlope);
+    const Real3<T> a = pS - dot(pS, n) * n, b = pT - dot(pT, n) * n;
+    const Real<T> f1 = dot(sight.across, a), f2 = dot(sight.across, b);
+    const Real<T> bend = sight.along * inverseLength;
+    const auto change = [&](const Real3<T>& slope, const Real3<T>& normalSlope) {
+        return sight.perEye * (dot(sight.o, slope) * sight.o - slope) +
+               sight.perVertex * (dot(sight.v, slope) * sight.v - slope) - bend * normalSlope;
     };
-    Num j11, j21, j12, j22;
-    change(pS, mS, j11, j21);
-    change(pT, mT, j12, j22);
-    const Num determinant = j11 * j22 - j12 * j21;
-    Num ds = (j12 * f2 - j22 * f1) / determinant;
-    Num dt = (j21 * f1 - j11 * f2) / determinant;
+    const Real3<T> turnS = change(pS, mS), turnT = change(pT, mT);
+    const Real<T> j11 = dot(a, turnS), j21 = dot(b, turnS), j12 = dot(a, turnT), j22 = dot(b, turnT);
+    const Real<T> perDeterminant = one / (j11 * j22 - j12 * j21);
+    Real<T> ds = perDeterminant * (j12 * f2 - j22 * f1);
+    Real<T> dt = perDeterminant * (j21 * f1 - j11 * f2);
 
     // The paper's step: along the bisector, by less than the way to the solution if the piece is convex.
     // Taken where Newton's method has no answer or, on convex pieces, walks away from the bisector.
-    const Num b11 = sLength, b12 = dot(t1, pT), b22 = dot(t2, pT);
-    const Num reach = one / (perEye + perVertex + one);
-    const Num plainT = reach * f2 / b22;
-    const Num plainS = (reach * f1 - b12 * plainT) / b11;
-    const Num progress = f1 * fma(b11, ds, b12 * dt) + f2 * (b22 * dt);
-    MD newton = size(ds) + size(dt) < num(1e100);
-    if (convex) newton = hn::And(newton, progress > zero);
-    ds = choose(newton, ds, plainS);
-    dt = choose(newton, dt, plainT);
-    const Num largest = most(size(ds), size(dt));
-    const Num shrink = choose(largest > num(longestStep), num(longestStep) / largest, one);
-    const MD sane = largest < num(1e100);
+    MaskOf<T> newton = size(ds) + size(dt) < real<T>(endless);
+    if (convex) newton = hn::And(newton, f1 * ds + f2 * dt > zero);
+    if (!hn::AllTrue(tag, newton)) {
+        const Real<T> aa = dot(a, a), ab = dot(a, b), bb = dot(b, b);
+        const Real<T> reach = one / ((sight.perEye + sight.perVertex + one) * (aa * bb - ab * ab));
+        ds = choose(newton, ds, reach * (bb * f1 - ab * f2));
+        dt = choose(newton, dt, reach * (aa * f2 - ab * f1));
+    }
+    const Real<T> largest = most(size(ds), size(dt));
+    const Real<T> shrink = choose(largest > real<T>(longestStep), real<T>(longestStep) / largest, one);
+    const MaskOf<T> sane = largest < real<T>(endless);
     ds = choose(sane, shrink * ds, zero);
     dt = choose(sane, shrink * dt, zero);
 
-    return {error, at.axes.out({ds, dt, zero}), at.axes.out(g), p, n, eyeDistance + vertexDistance};
+    return {sight.error, at.axes.out({ds, dt, zero}), at.axes.out(g), p, n, sight.path};
 }
 
-HWY_INLINE Judged choose(MD m, const Judged& a, const Judged& b) {
+/// The same at the end of the way: no step.
+template <class T>
+HWY_INLINE JudgedOf<T> judgeEnd(const ReflectorMap& map, const Real3<T>& eye, const Real3<T>& vertex,
+                                const Real3<T>& direction) {
+    const Real<T> one = real<T>(1), zero = real<T>(0);
+    const OnCubeOf<T> at = onCube(direction);
+    Real<T> q;
+    Real3<T> blended;
+    placeAt(map, at, q, blended);
+    const StretchOf<T> stretch(map);
+    const Real3<T> g = at.axes.out({at.s, at.t, one});
+    const Real3<T> p = stretch.positions((one / q) * g);
+    const Real3<T> m = stretch.normals(at.axes.out(blended));
+    const Real3<T> n = (one / root(dot(m, m))) * m;
+    const Sight<T> sight(eye, vertex, p, n);
+    return {sight.error, {zero, zero, zero}, g, p, n, sight.path};
+}
+
+template <class T>
+HWY_INLINE JudgedOf<T> choose(MaskOf<T> m, const JudgedOf<T>& a, const JudgedOf<T>& b) {
     return {choose(m, a.error, b.error), choose(m, a.step, b.step),     choose(m, a.onCube, b.onCube),
             choose(m, a.point, b.point), choose(m, a.normal, b.normal), choose(m, a.path, b.path)};
 }
@@ -148,11 +205,13 @@ struct Entry {
 };
 
 /// Segments (ends with the stretch taken out) that come nearer to the centre than any point of the surface.
-HWY_INLINE MD surelyEnters(const ReflectorMap& map, const Num3& from, const Num3& to) {
-    const Num3 along = to - from;
-    const Num nearest = least(most(-dot(from, along) / most(dot(along, along), num(1e-300)), num(0)), num(1));
-    const Num3 closest = from + nearest * along;
-    return dot(closest, closest) < num(map.innerRadius() * map.innerRadius());
+template <class T>
+HWY_INLINE MaskOf<T> surelyEnters(const ReflectorMap& map, const Real3<T>& from, const Real3<T>& to) {
+    const Real3<T> along = to - from;
+    const Real<T> nearest =
+        least(most(-dot(from, along) / most(dot(along, along), real<T>(tinyOf<T>)), real<T>(0)), real<T>(1));
+    const Real3<T> closest = from + nearest * along;
+    return dot(closest, closest) < real<T>(map.innerRadius() * map.innerRadius());
 }
 
 /// Along a line the gauge of a convex body is convex: the tangents at both ends of a bracket meet below its

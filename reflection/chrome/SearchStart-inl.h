@@ -37,58 +37,71 @@ struct EyeSide {
 };
 
 /// Where the plane mirrors the vertex; `works` where both are in front of it.
-HWY_INLINE Num3 planeMirror(const Num3& foot, const Num3& normal, const Num3& eye, const Num3& vertex,
-                            MD& works) {
-    const Num a = dot(eye - foot, normal), b = dot(vertex - foot, normal);
-    works = hn::And(a > num(0), b >= num(0));
-    const Num3 eyeFoot = eye - a * normal, vertexFoot = vertex - b * normal;
+template <class T>
+HWY_INLINE Real3<T> planeMirror(const Real3<T>& foot, const Real3<T>& normal, const Real3<T>& eye,
+                                const Real3<T>& vertex, MaskOf<T>& works) {
+    const Real<T> a = dot(eye - foot, normal), b = dot(vertex - foot, normal);
+    works = hn::And(a > real<T>(0), b >= real<T>(0));
+    const Real3<T> eyeFoot = eye - a * normal, vertexFoot = vertex - b * normal;
     return vertexFoot + (b / (a + b)) * (eyeFoot - vertexFoot);
 }
 
 /// The direction that a table of normals has for the bisector seen from the centre, stretch taken out.
-HWY_INLINE Num3 startFromTable(std::span<const glm::vec3> normals, const EyeSide& eyeSide,
-                               const Num3& vertex) {
-    const Doubles tag;
-    const Num length = root(dot(vertex, vertex));
-    const Num3 bisector = num3(eyeSide.unit) + (num(1) / most(length, num(1e-300))) * vertex;
-    const OnCube at = onCube(bisector);
+template <class T>
+HWY_INLINE Real3<T> startFromTable(std::span<const glm::vec3> normals, const EyeSide& eyeSide,
+                                   const Real3<T>& vertex) {
+    const LanesOf<T> tag;
+    const Real<T> length = root(dot(vertex, vertex));
+    const Real3<T> bisector =
+        real3<T>(eyeSide.unit) + (real<T>(1) / most(length, real<T>(tinyOf<T>))) * vertex;
+    const OnCubeOf<T> at = onCube(bisector);
     const double side = ReflectorMap::normalTableSide;
-    const auto texel = [&](Num x) {
-        return least(most(Num{hn::Floor(((x + num(1)) * num(0.5 * side)).v)}, num(0)), num(side - 1));
+    const auto texel = [&](Real<T> x) {
+        return least(most(Real<T>{hn::Floor(((x + real<T>(1)) * real<T>(0.5 * side)).v)}, real<T>(0)),
+                     real<T>(side - 1));
     };
-    const Num index = fma(fma(Num{at.face}, num(side), texel(at.t)), num(side), texel(at.s));
-    const auto first = hn::DemoteTo(HalfInts(), (num(3) * index).v);
+    const Real<T> index = fma(fma(Real<T>{at.face}, real<T>(side), texel(at.t)), real<T>(side), texel(at.s));
     const float* table = &normals.front().x;
-    const auto load = [&](int component) {
-        return Num{hn::PromoteTo(tag, hn::GatherIndex(HalfFloats(), table + component, first))};
+    const Real<T> first = real<T>(3) * index;
+    const auto load = [&](int component) -> Real<T> {
+        if constexpr (sizeof(T) == 8)
+            return {hn::PromoteTo(
+                tag, hn::GatherIndex(HalfFloats(), table + component, hn::DemoteTo(HalfInts(), first.v)))};
+        else
+            return {hn::GatherIndex(tag, table + component,
+                                    hn::ConvertTo(hn::Rebind<std::int32_t, LanesOf<T>>(), first.v))};
     };
     return {load(0), load(1), load(2)};
 }
 
 /// Directions from the centre to start from, stretch taken out.
-HWY_INLINE Num3 startFor(const ReflectorMap& map, const EyeSide& eyeSide, const Num3& vertex) {
-    const Doubles tag;
-    Num3 start = startFromTable(map.normalTable(), eyeSide, vertex);
-    const Num3 eye = num3(eyeSide.eye);
-    const Stretch stretch(map);
-    MD works;
+template <class T>
+HWY_INLINE Real3<T> startFor(const ReflectorMap& map, const EyeSide& eyeSide, const Real3<T>& vertex) {
+    const LanesOf<T> tag;
+    Real3<T> start = startFromTable(map.normalTable(), eyeSide, vertex);
+    const Real3<T> eye = real3<T>(eyeSide.eye);
+    const StretchOf<T> stretch(map);
+    MaskOf<T> works;
     if (eyeSide.gauge < closeGauge) {
-        const Num3 mirror = planeMirror(num3(eyeSide.foot), num3(eyeSide.normal), eye, vertex, works);
+        const Real3<T> mirror =
+            planeMirror(real3<T>(eyeSide.foot), real3<T>(eyeSide.normal), eye, vertex, works);
         start = choose(works, stretch.takeOut(mirror), start);
     }
-    const Num3 inCube = stretch.takeOut(vertex);
+    const Real3<T> inCube = stretch.takeOut(vertex);
     const double reach = closeGauge * map.outerRadius();
-    const MD near = dot(inCube, inCube) < num(reach * reach);
+    const MaskOf<T> near = dot(inCube, inCube) < real<T>(reach * reach);
     if (!hn::AllFalse(tag, near)) {
-        const OnCube under = onCube(inCube);
-        const Surface surface = surfaceAt(map, under);
-        const Num3 foot =
-            stretch.positions(under.axes.out((num(1) / surface.q) * Num3{under.s, under.t, num(1)}));
-        const Num3 upright = stretch.normals(under.axes.out(surface.m));
-        const Num3 normal = (num(1) / root(dot(upright, upright))) * upright;
-        const Num gauge = under.largest * surface.q;
-        const Num3 mirror = planeMirror(foot, normal, eye, vertex, works);
-        works = hn::And(works, gauge < num(std::min(closeGauge, eyeSide.gauge)));
+        const OnCubeOf<T> under = onCube(inCube);
+        Real<T> q;
+        Real3<T> m;
+        placeAt(map, under, q, m);
+        const Real3<T> foot =
+            stretch.positions(under.axes.out((real<T>(1) / q) * Real3<T>{under.s, under.t, real<T>(1)}));
+        const Real3<T> upright = stretch.normals(under.axes.out(m));
+        const Real3<T> normal = (real<T>(1) / root(dot(upright, upright))) * upright;
+        const Real<T> gauge = under.largest * q;
+        const Real3<T> mirror = planeMirror(foot, normal, eye, vertex, works);
+        works = hn::And(works, gauge < real<T>(std::min(closeGauge, eyeSide.gauge)));
         start = choose(works, stretch.takeOut(mirror), start);
     }
     return start;
