@@ -34,7 +34,8 @@ std::vector<Bench> allBenches() {
           "chrome bumper and wheel cover with a cyclist passing at 0.3 m, or the views of --staged "
           "FILE.json: "
           "error and time; pictures in --out",
-          trafficOptions | qualityOption | cellOption | pictureOptions | chromeOptions | outOptions},
+          trafficOptions | qualityOption | cellOption | pictureOptions | chromeOptions | viewOption |
+              outOptions},
          benchKerbside},
         {{"localmap", "one local map by every method, against re-rendering its six faces",
           mapOptions | mapsOnOptions},
@@ -48,7 +49,8 @@ std::vector<Bench> allBenches() {
         {{"square",
           "what stands in the city and mirrors it, by every method, and its polished stone and frosted "
           "glass: error and time; pictures in --out",
-          trafficOptions | qualityOption | cellOption | pictureOptions | chromeOptions | outOptions},
+          trafficOptions | qualityOption | cellOption | pictureOptions | chromeOptions | viewOption |
+              outOptions},
          benchSquare},
         {{"stills", "a car at 3, 10 and 40 m by every method, as pictures in --out",
           trafficOptions | memOption | qualityOption | cellOption | pictureOptions | outOptions},

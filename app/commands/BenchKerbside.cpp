@@ -81,6 +81,7 @@ int benchKerbside(const Options& asked) {
     if (shots.empty()) spdlog::error("no view of the staged vehicles shows chrome that is large enough");
     for (const KerbsideShot& shot : shots) {
         if (interrupted()) break;
+        if (shot.name.find(options.view) == std::string::npos) continue;
         spdlog::info("{}: at {:.2f} s, {:.2f} m apart", shot.name, shot.seconds, shot.apart);
         measureCloseUp(
             options, views,

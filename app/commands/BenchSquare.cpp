@@ -167,6 +167,7 @@ int benchSquare(const Options& options) {
         return exitFailed;
     }
     const Scene& scene = stage.scene;
+    const auto wanted = [&](const std::string& name) { return name.find(options.view) != std::string::npos; };
     vehicles::Traffic traffic = busyTraffic(scene, options.seed, options.cars.front(), lookedAhead);
     {
         CloseViews views(scene, stage.reflections, stage.renderer, options.resolution, options.quality,
@@ -175,6 +176,7 @@ int benchSquare(const Options& options) {
             assembleFrame(stage.scene.city, traffic, stage.scene.lighting, {}, stage.scene.staged);
         for (const PairShot& shot : pairShots(scene.city, options.resolution)) {
             if (interrupted()) break;
+            if (!wanted(shot.name)) continue;
             FrameScene pair = frame;
             pair.views = {shot.view};
             bringBeside(pair, shot);
@@ -192,10 +194,11 @@ int benchSquare(const Options& options) {
         }
         for (const SquareShot& shot : shots) {
             if (interrupted()) break;
-            measureShot(options, views, shot, frame, results, table);
+            if (wanted(shot.name)) measureShot(options, views, shot, frame, results, table);
             if (!shot.reflector || !shot.name.ends_with("near")) continue;
             SquareShot parkedBy = shot;
             parkedBy.name = scene.city.reflectors[*shot.reflector].name + " beside a car";
+            if (!wanted(parkedBy.name)) continue;
             FrameScene parked = frame;
             parkBeside(parked, scene, *shot.reflector, 0.5);
             measureShot(options, views, parkedBy, parked, results, table);
@@ -211,6 +214,7 @@ int benchSquare(const Options& options) {
             }
         }
     }
+    if (!options.view.empty() || !options.part.empty()) return reportBench(options, results, table);
     if (!interrupted()) measureCost(options, stage, shots.back().view, traffic, results, table);
     if (!interrupted()) measureStone(options, stage, std::move(traffic), results, table);
     return reportBench(options, results, table);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/commands/CloseViews.h"
+#include "app/compare/PictureErrorsOf.h"
 #include "app/report/Table.h"
 
 namespace app {
@@ -14,6 +15,44 @@ std::string fileName(const CloseUp& what, const std::string& method) {
     std::erase(shot, ',');
     std::ranges::replace(shot, ' ', '_');
     return what.prefix + "_" + shot + "_" + method + ".png";
+}
+
+/// The rectangle of the pixels that count, and a few around.
+std::pair<glm::ivec2, glm::ivec2> boundsOf(std::span<const unsigned char> mask, glm::ivec2 size) {
+    constexpr int margin = 6;
+    glm::ivec2 low = size, high(0);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+            if (mask[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
+                     static_cast<std::size_t>(x)] != 0) {
+                low = glm::min(low, glm::ivec2(x, y));
+                high = glm::max(high, glm::ivec2(x + 1, y + 1));
+            }
+    low = glm::max(low - margin, glm::ivec2(0));
+    return {low, glm::min(high + margin, size) - low};
+}
+
+/// One above the other.
+Picture above(const Picture& upper, const Picture& lower) {
+    Picture both = upper;
+    both.height += lower.height;
+    both.rgba.insert(both.rgba.end(), lower.rgba.begin(), lower.rgba.end());
+    return both;
+}
+
+/// What counts alone, by several methods side by side, and below each its error against the truth.
+Picture errorSheet(std::span<const Picture> pictures, const Picture& truth,
+                   std::span<const unsigned char> mask) {
+    const auto [corner, piece] = boundsOf(mask, {truth.width, truth.height});
+    std::vector<Picture> tiles;
+    for (const Picture& picture : pictures) {
+        Picture difference = differencePicture(picture, truth);
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            if (mask[i] == 0)
+                std::fill_n(difference.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 3, std::uint8_t{0});
+        tiles.push_back(above(cutOut(picture, corner, piece), cutOut(difference, corner, piece)));
+    }
+    return beside(tiles);
 }
 
 }  // namespace
@@ -33,13 +72,14 @@ Picture beside(std::span<const Picture> pictures) {
 
 void measureCloseUp(const Options& options, CloseViews& views, const CloseUp& what, ResultFile& results,
                     std::vector<std::vector<std::string>>& table) {
+    if (!options.part.empty() && options.part != "picture") return;
     const std::vector<unsigned char> mask = views.pixelsOf(what.frame, what.counts);
     const auto pixels = std::count(mask.begin(), mask.end(), 1);
     if (pixels == 0) {
         spdlog::warn("{}: nothing of it is seen", what.name);
         return;
     }
-    std::vector<Picture> strip(3);
+    std::vector<Picture> strip(3), sheet;
     std::vector<CloseViews::Drawn> all = views.draw(what.frame, what.methods, mask);
     for (CloseViews::Drawn& drawn : all) {
         if (drawn.method == "chrome") {
@@ -62,6 +102,9 @@ void measureCloseUp(const Options& options, CloseViews& views, const CloseUp& wh
         results.add(std::move(row));
         table.push_back(
             {file, std::to_string(pixels), fixed(drawn.psnr, 1), fixed(drawn.flip, 4), "", "", "", ""});
+        if (drawn.method == "mem" || drawn.method == "chrome" || drawn.method == "rerender" ||
+            drawn.method == "raytrace" || drawn.method == "truth")
+            sheet.push_back(drawn.picture);
         const std::size_t place = drawn.method == "mem"      ? 0
                                   : drawn.method == "chrome" ? 1
                                   : drawn.method == "truth"  ? 2
@@ -70,12 +113,15 @@ void measureCloseUp(const Options& options, CloseViews& views, const CloseUp& wh
     }
     if (std::ranges::none_of(strip, [](const Picture& p) { return p.rgba.empty(); }))
         writePng(beside(strip), options.out / fileName(what, "mem_chrome_truth"));
+    if (all.size() == what.methods.size())
+        writePng(errorSheet(sheet, sheet.front(), mask), options.out / fileName(what, "errors"));
 }
 
 void measureMotion(const Options& options, CloseViews& views, const std::string& name,
                    const std::function<FrameScene(std::uint32_t)>& frameAt, std::uint32_t count,
                    const CloseViews::Counts& counts, ResultFile& results,
                    std::vector<std::vector<std::string>>& table) {
+    if (!options.part.empty() && options.part != "motion") return;
     constexpr std::array<std::string_view, 4> methods{"truth", "mem", "chrome", "rerender"};
     for (const CloseViews::Motion& m : views.move(frameAt, count, methods, counts)) {
         if (m.frames == 0) continue;

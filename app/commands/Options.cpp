@@ -148,25 +148,29 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             .add_option("--out", o.out,
                         "folder for pictures and video (screenshots, where there is a window)")
             ->type_name("DIR")
-            ->check(isPath())
-            ->capture_default_str();
+            ->capture_default_str()
+            ->check(isPath());
+    using Names = std::vector<std::string>;
     if (groups & searchOption)
         parser
             .add_option_function<std::string>(
                 "--search", [&o](const std::string& text) { o.publishedSearch = text == "paper"; },
-                "search for reflection points, ours or paper: as published, 9 steps, for comparison (default "
-                "ours)")
+                "search for reflection points, ours (default) or paper: as published, 9 steps")
             ->type_name("NAME")
-            ->check(CLI::IsMember(std::vector<std::string>{"ours", "paper"}));
-    if (groups & searchOption)
+            ->check(CLI::IsMember(Names{"ours", "paper"}));
+    if (groups & (searchOption | viewOption))
         parser.add_option("--part", o.part, "one part of the measurement alone")
             ->type_name("NAME")
-            ->check(CLI::IsMember(std::vector<std::string>{"search", "gpu", "share", "published", "still",
-                                                           "frame", "picture", "bounces", "none"}));
+            ->check(CLI::IsMember(groups & viewOption ? Names{"picture", "motion", "cost"}
+                                                      : Names{"search", "gpu", "share", "published", "still",
+                                                              "frame", "picture", "bounces", "none"}));
     if (groups & searchOption)
         addNamed(parser, "--chrome-search", o.chromeSearch, chromeSearchNames,
-                 "who searches where pictures with chrome search for everything (default auto: gpu, but cpu "
-                 "where OpenGL is software)");
+                 "who searches where pictures with chrome search for everything (default auto: gpu, but "
+                 "cpu where OpenGL is software)");
+    if (groups & viewOption)
+        parser.add_option("--view", o.view, "only what is called so, or has this in its name")
+            ->type_name("NAME");
     if (groups & saveOption)
         parser.add_option("--save", o.save, "folder for pictures of what was measured")
             ->type_name("DIR")

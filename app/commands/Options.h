@@ -74,6 +74,7 @@ struct Options {
     std::optional<std::filesystem::path> save;  ///< folder for what was measured, as pictures
     bool publishedSearch = false;               ///< --search paper
     std::string part;                           ///< --part; empty: all of a measurement
+    std::string view;                           ///< --view; empty: all views
     ChromeSearchOn chromeSearch = ChromeSearchOn::automatic;
 
     /// --gpu-map-memory in bytes.
@@ -113,6 +114,7 @@ enum OptionGroup : unsigned {
     bodyOption = 1u << 24,     ///< --car --car-length, where nothing drives
     searchOption = 1u << 25,   ///< --search --part --chrome-search
     chromeOptions = 1u << 26,  ///< --chrome --chrome-share --chrome-bounces
+    viewOption = 1u << 27,     ///< --view --part
 
     reflectionOptions = methodOption | memOption | qualityOption | cellOption | mapsOnOptions,
     pictureOptions = timeOption | resolutionOption,

@@ -30,6 +30,7 @@ struct Case {
 void measureChromeCost(const Options& options, PreparedScene& stage, const CloseScene& close,
                        const std::string& name, const View& from, FrameScene frame, std::uint32_t reflector,
                        ResultFile& results, std::vector<std::vector<std::string>>& table) {
+    if (!options.part.empty() && options.part != "cost") return;
     const Scene& scene = stage.scene;
     SceneRenderer& renderer = stage.renderer;
     const OffscreenTarget target(options.resolution);

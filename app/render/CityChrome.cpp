@@ -55,7 +55,14 @@ void CityChrome::Impl::makeGlObjects() {
     mapSampler = gl::Sampler::create(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE);
     if (programs) return;
     programs = std::make_shared<Programs>();
-    programs->part = gl::Program::fromFiles({"chrome_part.vert", "chrome_part.frag"});
+    programs->mask = gl::Program::fromFiles({"chrome_part.vert", "chrome_part.frag"}, {"MASK"});
+    const auto makePart = [&](Drawing drawing, const std::vector<std::string>& defines) {
+        programs->parts[static_cast<std::size_t>(drawing)] =
+            gl::Program::fromFiles({"chrome_part.vert", "chrome_part.frag"}, defines);
+    };
+    makePart(Drawing::plain, {});
+    makePart(Drawing::map, {"REFLECTIVE"});
+    makePart(Drawing::parallax, {"REFLECTIVE", "PARALLAX"});
     const auto make = [&](Drawing drawing, std::vector<std::string> defines) {
         defines.emplace_back("VIRTUAL");
         const bool city = drawing == Drawing::solid || drawing == Drawing::cutout;
@@ -97,6 +104,7 @@ const CityChrome::Impl::PieceMesh& CityChrome::Impl::pieceMesh(const reflection:
     mesh.array = gl::VertexArray::create();
     mesh.array.buffer(0, mesh.vertices.name(), sizeof(city::Vertex))
         .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
+        .attribute(1, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, normal))
         .indices(mesh.indices.name());
     mesh.count = static_cast<GLsizei>(piece.mesh.indices.size());
     mesh.box = piece.mesh.bounds();
@@ -117,6 +125,9 @@ CityChrome::Impl::Layer CityChrome::Impl::layerOf(const ChromeShown& shown, std:
     l.name = {around.poses[shown.job->vehicle].id, shown.job->part, shown.job->wheel, piece};
     l.worldFromPart = shown.job->worldFromPart;
     l.share = shown.job->share;
+    // A picture is taken up by place: there only what is close has its place.
+    l.far = alone ? drawingOf(shown.job->vehicle) : Drawing::plain;
+    if (l.far != Drawing::plain) l.slot = around.slots[shown.job->vehicle];
     l.pixels = pixelsOfBox(clipFromPart(*shown.job, pass), drawnSize, pieceMesh(*shown.piece).box);
     l.things.reserve(shown.objects.size());
     for (const ChromeObject* o : shown.objects) {
@@ -147,7 +158,7 @@ std::vector<bool> CityChrome::Impl::outdated(std::span<const ChromeShown> shown,
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const Layer& l = layers[i];
         const auto was = std::ranges::find_if(before, [&](const Layer& b) { return b.name == l.name; });
-        anew[i] = anew[i] || was == before.end() || !(*was == l) ||
+        anew[i] = anew[i] || was == before.end() || !(*was == l) || renewed(l.slot) ||
                   std::ranges::any_of(shown[i].objects, [](const auto* o) { return o->changed; }) ||
                   std::ranges::any_of(l.things, [&](const auto& t) { return renewed(t.slot); }) ||
                   std::ranges::any_of(l.pictures, [](const auto* p) { return p->changed; });
@@ -226,9 +237,6 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         ++counts.drawn;
         const ChromeJob& job = *shown[i].job;
         const Impl::PieceMesh& mesh = my.pieceMesh(*shown[i].piece);
-        const glm::mat4 clipFromPart = Impl::clipFromPart(job, pass);
-        my.programs->part.set("clipFromPart", clipFromPart);
-        my.programs->part.set("share", job.share);
         const glm::dmat3 turn(job.worldFromPart);
         const glm::vec3 middle(glm::dvec3(job.worldFromPart[3]) - pass.eye);
         const glm::mat4 clipFromVirtual = pass.clipFromRelative * glm::mat4(glm::dmat4(turn));
@@ -237,7 +245,8 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         my.layer->begin(size, l.pixels);
         my.layer->beginMask();
         glEnable(GL_CULL_FACE);
-        my.programs->part.use();
+        my.programs->mask.set("clipFromPart", Impl::clipFromPart(job, pass));
+        my.programs->mask.use();
         mesh.array.bind();
         glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
         my.layer->endMask();
@@ -252,10 +261,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         }
         glBindFramebuffer(GL_FRAMEBUFFER, my.target.name());
         glEnable(GL_CULL_FACE);
-        my.programs->part.use();
-        glBindTextureUnit(5, my.layer->colour());
-        mesh.array.bind();
-        glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+        my.drawPiece(l, mesh, pass, around);
     }
     my.before = std::move(layers);
     my.seenBefore = seenAs;
@@ -263,6 +269,38 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
     setDrawState();
     counts.milliseconds = milliseconds(start);
     return counts;
+}
+
+void CityChrome::Impl::bindMap(const gl::Program& program, Drawing drawing,
+                               const reflection::LocalMapSlot& slot, const glm::dvec3& eye,
+                               const Surroundings& around) {
+    if (drawing != Drawing::map && drawing != Drawing::parallax) return;
+    const auto sizeClass = static_cast<std::size_t>(slot.sizeClass);
+    glm::vec4 map(0, 0, 0, slot.layer);
+    if (drawing == Drawing::parallax) {
+        const auto layerAt = static_cast<std::size_t>(slot.layer);
+        map = glm::vec4(glm::vec3(around.textures->centres[sizeClass][layerAt] - eye), map.w);
+        glBindTextureUnit(4, around.textures->nearnessArrays[sizeClass]);
+    }
+    program.set("map", map);
+    mapSampler.bind(2);
+    glBindTextureUnit(2, around.textures->cubeArrays[sizeClass]);
+}
+
+void CityChrome::Impl::drawPiece(const Layer& l, const PieceMesh& mesh, const PassView& pass,
+                                 const Surroundings& around) {
+    const gl::Program& program = programs->parts[static_cast<std::size_t>(l.far)];
+    glm::dmat4 relativeFromPart = l.worldFromPart;
+    relativeFromPart[3] -= glm::dvec4(pass.eye, 0);
+    program.set("clipFromPart", pass.clipFromRelative * glm::mat4(relativeFromPart));
+    program.set("relativeFromPart", glm::mat4(relativeFromPart));
+    program.set("share", l.share);
+    program.use();
+    bindMap(program, l.far, l.slot, pass.eye, around);
+    glBindTextureUnit(5, layer->colour());
+    mesh.array.bind();
+    glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+    glBindSampler(2, 0);
 }
 
 void CityChrome::Impl::drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
@@ -283,21 +321,7 @@ void CityChrome::Impl::drawThing(const Layer::Thing& thing, const glm::mat4& cli
             glBindTextureUnit(5, bodies->colour());
             glBindTextureUnit(6, bodies->depth());
         }
-        if (thing.drawing != Drawing::plain) {
-            const auto sizeClass = static_cast<std::size_t>(thing.slot.sizeClass);
-            glm::vec4 map(0, 0, 0, thing.slot.layer);
-            if (thing.drawing == Drawing::parallax) {
-                map = glm::vec4(
-                    glm::vec3(
-                        around.textures->centres[sizeClass][static_cast<std::size_t>(thing.slot.layer)] -
-                        eye),
-                    map.w);
-                glBindTextureUnit(4, around.textures->nearnessArrays[sizeClass]);
-            }
-            program.set("map", map);
-            mapSampler.bind(2);
-            glBindTextureUnit(2, around.textures->cubeArrays[sizeClass]);
-        }
+        bindMap(program, thing.drawing, thing.slot, eye, around);
     }
     thing.object->drawn->draw();
     glBindSampler(2, 0);

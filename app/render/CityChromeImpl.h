@@ -40,6 +40,8 @@ struct CityChrome::Impl {
         std::array<std::uint32_t, 4> name{};  ///< vehicle, part, wheel, piece
         glm::dmat4 worldFromPart{1};
         float share = 0;
+        Drawing far = Drawing::plain;   ///< how the part's own map is taken up
+        reflection::LocalMapSlot slot;  ///< that map
         reflection::PixelRect pixels;
         struct Thing {
             const ChromeObject* object = nullptr;
@@ -57,8 +59,9 @@ struct CityChrome::Impl {
         std::vector<Thing> things;
         std::vector<const Picture*> pictures;  ///< of chrome seen in it
         bool operator==(const Layer& b) const {
-            return name == b.name && worldFromPart == b.worldFromPart && share == b.share &&
-                   pixels == b.pixels && things == b.things && pictures == b.pictures;
+            return name == b.name && worldFromPart == b.worldFromPart && share == b.share && far == b.far &&
+                   slot.sizeClass == b.slot.sizeClass && slot.layer == b.slot.layer && pixels == b.pixels &&
+                   things == b.things && pictures == b.pictures;
         }
     };
     struct PieceMesh {
@@ -92,6 +95,11 @@ struct CityChrome::Impl {
                       const ChromeDrawing& options, ChromeCounts& counts);
     /// Where that chrome is seen in a part, with the pictures' light: into `bodies`.
     void drawBodies(const Layer& l, const glm::mat4& clipFromVirtual);
+    /// The piece's own pixels: what the layer holds, and what is far away.
+    void drawPiece(const Layer& l, const PieceMesh& mesh, const PassView& pass, const Surroundings& around);
+    /// Binds a vehicle's map for shaders that look it up.
+    void bindMap(const gl::Program& program, Drawing drawing, const reflection::LocalMapSlot& slot,
+                 const glm::dvec3& eye, const Surroundings& around);
     void drawThing(const Layer::Thing& thing, const glm::mat4& clipFromVirtual,
                    const glm::mat3& worldFromPart, const glm::vec4& closeAround, const glm::dvec3& eye,
                    const Surroundings& around);
@@ -123,8 +131,9 @@ struct CityChrome::Impl {
 /// Shared by all pictures of a view.
 struct CityChrome::Impl::Programs {
     std::array<gl::Program, static_cast<std::size_t>(Drawing::count)> things;
-    gl::Program part;
-    gl::Program body;  ///< made with the first picture
+    gl::Program mask;                                                         ///< a piece opens its layer
+    std::array<gl::Program, static_cast<std::size_t>(Drawing::count)> parts;  ///< and takes it up: plain on
+    gl::Program body;                                                         ///< made with the first picture
 };
 
 /// Where a piece of chrome is seen in another: one for all its slices.

@@ -11,24 +11,7 @@ layout(location = 4) flat in vec4 map;  // centre of the local map, relative to 
 layout(binding = 2) uniform samplerCubeArray localMap;
 #endif
 #ifdef PARALLAX
-layout(binding = 4) uniform samplerCubeArray nearness;  // 1 / distance along the cube's directions
-
-/// 1 / distance, in units of the direction's length, of what the map's centre sees there.
-float nearnessAlong(vec3 direction) {
-    vec3 a = abs(direction);
-    return max(max(a.x, a.y), a.z) * textureLod(nearness, vec4(direction, map.w), 0.0).r;
-}
-
-/// 1 / distance of what a ray meets that starts off the map's centre, 0 for the sky: the root w of
-/// nearnessAlong(towards + w * from) = w, since the centre sees from + towards / w there. On a plane nearness is
-/// linear in the direction, and the secant through w = 0 and what the direction alone says ends at the root. More
-/// lookups were measured to gain nothing: what is left is hidden from the centre.
-float nearnessOfHit(vec3 from, vec3 towards) {
-    float first = nearnessAlong(towards);
-    float second = nearnessAlong(towards + first * from);
-    // The quotient is 1 far away and near 2 where the centre sees past the ray's plane.
-    return first / max(2.0 - second / max(first, 1e-6), 0.25);
-}
+#include "parallax.glsl"
 #endif
 #ifdef VIRTUAL
 layout(location = 5) in vec3 seenFrom;
@@ -55,23 +38,44 @@ void main() {
     float grazing2 = grazing * grazing;
     float fresnel = coat.x + (1.0 - coat.x) * coat.y * grazing2 * grazing2 * grazing;  // Schlick
     vec3 reflected = 2.0 * dot(n, towardsEye) * n - towardsEye;
+#if defined CHROME || defined VIRTUAL
+    // Of this very part: within a twentieth of its distance, more than a level of detail is off by.
+    vec4 close = vec4(0.0);
+#ifdef VIRTUAL
+    if (bounced && coat.x > 0.6) {
+#else
+    if (coat.x > 0.6) {
+#endif
+        float depth = texelFetch(closeDepth, ivec2(gl_FragCoord.xy), 0).r;
+        if (abs(depth - gl_FragCoord.z) < 0.05 * gl_FragCoord.z) close = texelFetch(closeLight, ivec2(gl_FragCoord.xy), 0);
+    }
+#endif
 #if defined SCREEN
     vec3 mirrored = texelFetch(screenLight, ivec2(gl_FragCoord.xy), 0).rgb;
 #elif defined REFLECTIVE
     // The level whose texels are as wide as what the pixel reflects: derivatives of the reflected direction, not of face coordinates, which
     // jump at edges. A face of n texels spans two units.
-    vec3 direction = reflected;
+    vec3 dx = dFdx(reflected), dy = dFdy(reflected);
 #ifdef PARALLAX
-    vec3 from = relative - map.xyz;
-    float near = nearnessOfHit(from, reflected);
-    direction += near * from;
-    vec3 across = max(abs(dFdx(reflected) + near * dFdx(from)), abs(dFdy(reflected) + near * dFdy(from)));
-#else
-    vec3 across = max(abs(dFdx(reflected)), abs(dFdy(reflected)));
+    vec3 from = relative - map.xyz, fromX = dFdx(from), fromY = dFdy(from);
 #endif
-    float wide = max(max(across.x, across.y), across.z) * 0.5 * float(textureSize(localMap, 0).x);
-    float level = max(log2(max(wide, 1e-4)), coat.x > 0.3 && coat.x < 0.5 ? 2.0 : 0.0);  // rims are brushed
-    vec3 mirrored = textureLod(localMap, vec4(direction, map.w), level).rgb;
+    vec3 mirrored = vec3(0.0);
+#if defined CHROME || defined VIRTUAL
+    if (close.a < 1.0)
+#endif
+    {
+        vec3 direction = reflected;
+#ifdef PARALLAX
+        float near = nearnessOfHit(from, reflected, map.w);
+        direction += near * from;
+        vec3 across = max(abs(dx + near * fromX), abs(dy + near * fromY));
+#else
+        vec3 across = max(abs(dx), abs(dy));
+#endif
+        float wide = max(max(across.x, across.y), across.z) * 0.5 * float(textureSize(localMap, 0).x);
+        float level = max(log2(max(wide, 1e-4)), coat.x > 0.3 && coat.x < 0.5 ? 2.0 : 0.0);  // rims are brushed
+        mirrored = textureLod(localMap, vec4(direction, map.w), level).rgb;
+    }
 #else
     // No map: the sky's mean above, the ground's below.
     float up = clamp(reflected.z * 2.0 + 0.5, 0.0, 1.0);
@@ -81,16 +85,7 @@ void main() {
     mirrored += frame.sunIrradiance.rgb * (8.0 * glint * coat.y * coat.z);
 #endif
 #if defined CHROME || defined VIRTUAL
-#ifdef VIRTUAL
-    if (bounced && coat.x > 0.6) {
-#else
-    if (coat.x > 0.6) {
-#endif
-        // Of this very part: within a twentieth of its distance, more than a level of detail is off by.
-        float depth = texelFetch(closeDepth, ivec2(gl_FragCoord.xy), 0).r;
-        vec4 close = texelFetch(closeLight, ivec2(gl_FragCoord.xy), 0);
-        if (abs(depth - gl_FragCoord.z) < 0.05 * gl_FragCoord.z) mirrored = mix(mirrored, close.rgb, close.a);
-    }
+    mirrored = mix(mirrored, close.rgb, close.a);
 #endif
     vec3 radiance = diffuse * (1.0 - fresnel) + mirrored * fresnel;
 #if defined CUBE || defined VIRTUAL
