@@ -72,9 +72,8 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
     std::vector<Followed> how;
     reflection::VirtualOptions all = options.vertex, some = options.vertex;
     all.share = 1;
-    // As what is drawn: meshes, each of which keeps to its tolerance.
-    some.beyondShare = true;
     how.push_back({"all", all});
+    some.bounded = false;
     how.push_back({"9.6 %", some});
     if (!options.vertex.published) {
         all.published = reflection::PublishedOptions{};

@@ -64,7 +64,7 @@ struct Options {
     double mirrorFade = 0;         ///< metres; 0: mirrors do not fade
     bool chrome = true;            ///< chrome shows close things itself
     int chromeBounces = 1;         ///< chrome parts in a row that show what is close
-    double chromeShare = 0.096;    ///< of vertices that are searched for in it
+    double chromeShare = 0;        ///< of vertices that are searched for in it at most; 0: no bound
     Weather weather = Weather::dry;
     std::uint32_t samples = 64;  ///< mirror rays a pixel
     std::uint32_t bounces = 3;   ///< mirrors in a row

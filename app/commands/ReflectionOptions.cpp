@@ -84,11 +84,10 @@ void addChrome(CLI::App& parser, Options& o) {
     parser
         .add_option(
             "--chrome-share", o.chromeShare,
-            "share of close things' vertices that are searched for in chrome, 0.001 to 1; the rest follow "
-            "them in cells. What is drawn goes beyond it where a cell would be off by a quarter of a "
-            "pixel; 1 searches for all")
+            "of the vertices that a piece of chrome shows, search for no more than this share, 0.001 to 1, "
+            "those first that would be farthest off; the rest follow them in cells; 1 searches for all. "
+            "Default: as many as it takes until none is off by more than a quarter of a pixel")
         ->type_name("SHARE")
-        ->capture_default_str()
         ->check(between(0.001, 1, ""));
     parser
         .add_option("--chrome-bounces", o.chromeBounces,

@@ -12,16 +12,17 @@ inline constexpr int mostChromeBounces = 4;
 
 /// How close things are searched for and drawn.
 struct ChromeDrawing {
-    /// Of a vehicle's vertices, searched for themselves; the rest follow on grids (BoundingGrid).
-    double share = 0.096;
+    /// Of what a piece of chrome shows, vertices that are searched for themselves, at most; the rest follow
+    /// in cells. 0: as many as it takes until none is off by more than half the tolerance.
+    double share = 0;
     double tolerance = 0.5;  ///< pixels by which a reflected edge may be off where it is drawn straight
     double detail = 1;       ///< pixels in the chrome by which close things' levels may be off
     bool keep = true;        ///< what nothing moved; false: for measuring
     /// Chrome parts in a row that show what is close to them, 1 .. mostChromeBounces. 1: chrome that is seen
     /// in chrome mirrors its vehicle's map alone.
     int bounces = 1;
-    /// Pixels that chrome must cover in other chrome to show what is close to it, where there is more than one
-    /// bounce; see ChromeBounceOptions.
+    /// Pixels that chrome must cover in other chrome to show what is close to it, where there is more than
+    /// one bounce; see ChromeBounceOptions.
     double bouncePixels = 24;
     bool wait = true;  ///< for reflectors of parts seen in others; otherwise they are made in the background
 

@@ -22,7 +22,7 @@ struct DriveSettings {
     std::uint32_t mirrorMaps = 8;  ///< reflections drawn a frame at most
     double mirrorFade = 0;         ///< metres behind a mirror on which what it shows fades to 1/e; 0: not
     bool chrome = true;            ///< chrome shows close things where they truly appear
-    double chromeShare = 0.096;    ///< of close vehicles' vertices, searched for themselves
+    double chromeShare = 0;        ///< of what chrome shows, searched for at most; 0: no bound
     int chromeBounces = 1;         ///< chrome parts in a row that show close things
     Weather weather = Weather::dry;  ///< wet streets need `mirrors`
     bool adapt = true;               ///< exposure follows the light around the viewer

@@ -250,8 +250,8 @@ void Panel::Impl::drawChrome(const PanelNews& news, DriveSettings& settings) {
     ImGui::Checkbox("show what is close", &settings.chrome);
     if (!settings.chrome) return;
     auto share = static_cast<float>(settings.chromeShare);
-    ImGui::SliderFloat("searched", &share, 0.01f, 1, "%.3f",
-                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat("searched at most", &share, 0, 1, share > 0 ? "%.3f" : "as it takes",
+                       ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemEdited()) settings.chromeShare = static_cast<double>(share);
     ImGui::SliderInt("bounces", &settings.chromeBounces, 1, mostChromeBounces, "%d",
                      ImGuiSliderFlags_AlwaysClamp);

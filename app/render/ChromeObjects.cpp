@@ -45,15 +45,14 @@ double awayFrom(const glm::dvec3& place, const city::Aabb& box) {
 }  // namespace
 
 ChromeObject& ChromeObjects::object(Kept& job, std::size_t piece, std::uint64_t thing, std::uint32_t index,
-                                    const CloseMesh& source, double share) {
+                                    const CloseMesh& source, const reflection::VirtualMeshOptions& options) {
     ChromeObject& o = job.objects[{piece, thing, index}];
     o.used = frame_;
-    if (o.source != &source) {
+    const bool whole = options.vertices.share >= 1;
+    if (o.source != &source || o.whole != whole) {
         o.source = &source;
-        reflection::VirtualMeshOptions virtualOptions;
-        virtualOptions.vertices.share = source.exact ? 1 : share;
-        virtualOptions.vertices.search.thorough = false;
-        o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, virtualOptions);
+        o.whole = whole;
+        o.mesh = std::make_unique<reflection::VirtualMesh>(source.positions, source.indices, options);
         o.drawn.reset();
         o.lastTolerance = -1;
     }
@@ -110,6 +109,8 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
         const double coarse = 1 / std::max(static_cast<double>(job.share), faintest);
         const double radiansOff = coarse * options.detail / pixelsPerRadian;
         reflection::VirtualMeshOptions virtualOptions;
+        virtualOptions.vertices = reflection::withShare({}, options.share);
+        virtualOptions.vertices.threads = true;
         virtualOptions.vertices.search.thorough = false;
         // The ground is cut off at the patch alone: its edges are as long as the patch.
         virtualOptions.mostHalvings = mostHalvings;
@@ -134,11 +135,20 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
             ChromeShown& shown = shown_.emplace_back();
             shown.job = &job;
             shown.piece = &piece;
-            const auto add = [&](ChromeObject& o, const glm::dmat4& worldFromMesh, std::uint32_t vehicle) {
+            Task& task = tasks_.emplace_back();
+            task.map = &piece.built.map;
+            task.eye = eye;
+            const auto add = [&](std::uint64_t thing, std::uint32_t index, const CloseMesh& source,
+                                 const glm::dmat4& worldFromMesh, std::uint32_t vehicle) {
+                reflection::VirtualMeshOptions how = virtualOptions;
+                // Without a bound there is nothing to gain by cells between what stands far apart.
+                if (source.exact && !how.vertices.bounded) how.vertices.share = 1;
+                ChromeObject& o = object(kept, p, thing, index, source, how);
                 o.worldFromMesh = worldFromMesh;
                 o.vehicle = vehicle;
                 shown.objects.push_back(&o);
-                tasks_.push_back({&o, &piece.built.map, eye, partFromWorld * worldFromMesh, virtualOptions});
+                task.objects.push_back(&o);
+                task.meshes.push_back({o.mesh.get(), partFromWorld * worldFromMesh, how, {}});
             };
             boxes.clear();
             for (const CloseMesh& mesh : kept.city)
@@ -167,7 +177,7 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
                     ++counts.leftOut;
                     continue;
                 }
-                add(object(kept, p, 0, i, kept.city[i], 1), worldFromPatch, ChromeObject::noVehicle);
+                add(0, i, kept.city[i], worldFromPatch, ChromeObject::noVehicle);
             }
             for (std::size_t k = 0; k < job.close.size(); ++k) {
                 const CloseImage& image = images[kept.city.size() + k];
@@ -179,8 +189,8 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
                 std::uint32_t number = 0;
                 for (const CloseVehicles::Placed& placed :
                      vehicles_.of(pose, static_cast<float>(image.metresPerRadian * radiansOff)))
-                    add(object(kept, p, 1 + std::uint64_t{pose.id}, number++, *placed.mesh, options.share),
-                        placed.worldFromMesh, job.close[k]);
+                    add(1 + std::uint64_t{pose.id}, number++, *placed.mesh, placed.worldFromMesh,
+                        job.close[k]);
             }
         }
     }
@@ -193,25 +203,36 @@ std::span<const ChromeShown> ChromeObjects::search(const ChromeDrawing& options,
     const auto searching = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, tasks_.size(), [&](std::size_t i) {
         Task& task = tasks_[i];
-        ChromeObject& o = *task.object;
-        // Nothing moved: what was found last is there still.
-        o.changed = !options.keep || !(o.lastEye == task.eye && o.lastMesh == task.partFromMesh &&
-                                       o.lastTolerance == task.options.tolerance);
-        if (!o.changed) return;
-        o.counts = o.mesh->update(*task.map, task.eye, task.partFromMesh, task.options);
-        o.stale = true;
-        o.lastEye = task.eye;
-        o.lastMesh = task.partFromMesh;
-        o.lastTolerance = task.options.tolerance;
+        std::vector<reflection::VirtualMesh::Placed> moved;
+        std::vector<ChromeObject*> of;
+        for (std::size_t k = 0; k < task.objects.size(); ++k) {
+            ChromeObject& o = *task.objects[k];
+            const reflection::VirtualMesh::Placed& mesh = task.meshes[k];
+            // Nothing moved: what was found last is there still.
+            o.changed =
+                !options.keep || !(o.lastEye == task.eye && o.lastMesh == mesh.reflectorFromMesh &&
+                                   o.lastTolerance == mesh.options.tolerance && o.lastShare == options.share);
+            if (!o.changed) continue;
+            moved.push_back(mesh);
+            of.push_back(&o);
+            o.stale = true;
+            o.lastEye = task.eye;
+            o.lastMesh = mesh.reflectorFromMesh;
+            o.lastTolerance = mesh.options.tolerance;
+            o.lastShare = options.share;
+        }
+        reflection::VirtualMesh::update(*task.map, task.eye, moved);
+        for (std::size_t k = 0; k < moved.size(); ++k) of[k]->counts = moved[k].counts;
     });
     counts.searchMilliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - searching).count();
-    for (const Task& task : tasks_) {
-        ++counts.meshes;
-        counts.vertices += task.object->mesh->vertices().size();
-        counts.searched += task.object->changed ? task.object->counts.searched : 0;
-        counts.triangles += task.object->mesh->indices().size() / 3;
-    }
+    for (const Task& task : tasks_)
+        for (const ChromeObject* o : task.objects) {
+            ++counts.meshes;
+            counts.vertices += o->mesh->vertices().size();
+            counts.searched += o->changed ? o->counts.searched : 0;
+            counts.triangles += o->mesh->indices().size() / 3;
+        }
     return shown_;
 }
 

@@ -35,7 +35,8 @@ struct ChromeObject {
     /// What its image was found for.
     glm::dmat4 lastMesh{0};
     glm::dvec3 lastEye{0};
-    double lastTolerance = -1;
+    double lastTolerance = -1, lastShare = -1;
+    bool whole = false;  ///< made without cells
 };
 
 /// What one piece of a job's part shows.
@@ -82,16 +83,16 @@ class ChromeObjects {
             objects;              ///< piece, thing, mesh
         std::vector<Look> looks;  ///< by pieces
     };
+    /// All that one piece shows: one budget of searches.
     struct Task {
-        ChromeObject* object;
-        const reflection::ReflectorMap* map;
-        glm::dvec3 eye;
-        glm::dmat4 partFromMesh;
-        reflection::VirtualMeshOptions options;
+        const reflection::ReflectorMap* map = nullptr;
+        glm::dvec3 eye{0};
+        std::vector<ChromeObject*> objects;
+        std::vector<reflection::VirtualMesh::Placed> meshes;
     };
 
     ChromeObject& object(Kept& kept, std::size_t piece, std::uint64_t thing, std::uint32_t index,
-                         const CloseMesh& source, double share);
+                         const CloseMesh& source, const reflection::VirtualMeshOptions& options);
     void gatherCity(const ChromeJob& job, const reflection::ReflectorMap& map, const glm::dvec3& eye,
                     double radiansOff, Kept& kept);
 

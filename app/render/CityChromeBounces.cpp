@@ -26,7 +26,7 @@ std::vector<glm::vec3> positionsOf(std::span<const city::Vertex> vertices) {
 
 reflection::VirtualMeshOptions meshOptions(double share) {
     reflection::VirtualMeshOptions options;
-    options.vertices.share = share;
+    options.vertices = reflection::withShare(options.vertices, share);
     options.vertices.search.thorough = false;
     return options;
 }

@@ -91,8 +91,9 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
                                      bool concave, const reflection::ChromeTreeOptions& bounces)
     : impl_(std::make_unique<Impl>(world)) {
     reflection::VirtualMeshOptions options = given;
-    // Pictures are many, and each vertex behind an open part's rim would be looked for everywhere.
-    if (bounces.depth > 1) options.vertices.search.thorough = false;
+    // Each vertex behind an open part's rim would be looked for everywhere, to be drawn nowhere.
+    options.vertices.search.thorough = false;
+    options.vertices.threads = true;
     impl_->options = options;
     impl_->bounces = bounces;
     impl_->bounces.search.thorough = false;
@@ -205,9 +206,12 @@ void MirrorWorldChrome::Impl::drawPiece(const Image& image, std::size_t curved, 
         frame.searched += p.onGpu->vertexCount();
         frame.triangles += p.onGpu->triangleCount();
     }
-    for (Object& o : p.objects)
-        if (!p.onGpu)
-            add(o.mesh.update(p.piece->built.map, image.view.eye, glm::dmat4(1), how), o.mesh, frame);
+    if (!p.onGpu) {
+        std::vector<reflection::VirtualMesh::Placed> meshes;
+        for (Object& o : p.objects) meshes.push_back({&o.mesh, glm::dmat4(1), how, {}});
+        reflection::VirtualMesh::update(p.piece->built.map, image.view.eye, meshes);
+        for (const reflection::VirtualMesh::Placed& m : meshes) add(m.counts, *m.mesh, frame);
+    }
     frame.searchMilliseconds += millisecondsSince(start);
     into.begin(image.size, pixels);
     // Mirrored once: what is seen of an object's front has turned round.

@@ -43,7 +43,12 @@ CellImage::CellImage(std::span<const glm::vec3> positions, const VirtualOptions&
       images(tree.nodes().size()),
       wasCut(tree.cells().size(), 0),
       wasGood(tree.cells().size(), 0),
-      wasRefined(tree.cells().size(), 0) {}
+      wasRefined(tree.cells().size(), 0),
+      leaves(tree.cells().size()) {}
+
+void CellImage::tell(const VirtualOptions& options) {
+    settings = options;
+}
 
 std::size_t CellImage::begin(const ReflectorMap& map, const glm::dvec3& eye,
                              const glm::dmat4& reflectorFromMesh) {
@@ -89,6 +94,37 @@ void CellImage::openRemembered(std::size_t k, bool judgeAnew) {
     }
 }
 
+std::optional<SeenInCell> CellImage::at(const glm::vec3& place) const {
+    if (tree.cells().empty()) return std::nullopt;
+    const auto within = [&](const CellTree::Cell& cell) {
+        const glm::vec3& side = tree.side(cell.level);
+        for (int a = 0; a < 3; ++a)
+            if (!(place[a] >= cell.low[a] && place[a] <= cell.low[a] + side[a])) return false;
+        return true;
+    };
+    if (!within(tree.cells()[0])) return std::nullopt;
+    for (std::uint32_t id = 0;;) {
+        const CellTree::Cell& cell = tree.cells()[id];
+        if (leaves[id].update == update) {
+            const SmoothCell& s = smooth[leaves[id].at];
+            // Torn, and interpolated for want of better.
+            if (s.straight && s.status == ReflectionStatus::found) return std::nullopt;
+            const glm::vec4 v = interpolateIn(tree, images, cell, place);
+            ReflectionStatus status = s.status;
+            if (status == ReflectionStatus::invalid) {
+                if (!(std::abs(v.w) > s.doubt)) return std::nullopt;
+                status = v.w > 0 ? ReflectionStatus::found : ReflectionStatus::hidden;
+            }
+            return SeenInCell{{glm::vec3(v), status}, v.w};
+        }
+        std::uint32_t child = cell.children;
+        const std::uint32_t end = cell.children + cell.count;
+        while (child < end && !within(tree.cells()[child])) ++child;
+        if (child == end) return std::nullopt;
+        id = child;
+    }
+}
+
 std::size_t CellImage::forget() {
     if (tree.cells().empty()) return 0;
     std::fill(wasCut.begin(), wasCut.end(), std::uint8_t{0});
@@ -120,6 +156,7 @@ bool CellImage::ask(SearchBatch& batch, std::span<VirtualVertex> image, VirtualC
         interpolated = true;
         doubtful.clear();
         interpolateCells(tree, images, smooth, image, doubtful);
+        for (std::uint32_t k = 0; k < smooth.size(); ++k) leaves[smooth[k].cell] = {update, k};
         counts.atOutlines += doubtful.size();
         // Of those that are left the cosine's sign tells; it is wrong by a hair's breadth on screen.
         doubtful.resize(std::min(doubtful.size(), left));
@@ -390,7 +427,7 @@ CellImage::Judgement CellImage::judge(std::uint32_t id) const {
 
 float CellImage::offBy(const SmoothCell& s, const ReflectionPoint& r) const {
     const CellTree::Cell& cell = tree.cells()[s.cell];
-    const glm::vec4 expected = interpolateIn(tree, images, cell, cell.probe);
+    const glm::vec4 expected = interpolateIn(tree, images, cell, position(cell.probe));
     if (s.straight) return r.status != ReflectionStatus::found ? 0 : extentOf(cell);
     ReflectionStatus status = s.status;
     if (status == ReflectionStatus::invalid)

@@ -146,11 +146,11 @@ void interpolateCells(const CellTree& tree, std::span<const PathImage> atNodes,
 }
 
 glm::vec4 interpolateIn(const CellTree& tree, std::span<const PathImage> atNodes, const CellTree::Cell& cell,
-                        std::uint32_t place) {
+                        const glm::vec3& place) {
     const glm::vec3& side = tree.side(cell.level);
     std::array<float, 3> at{};
     for (int a = 0; a < 3; ++a)
-        at[static_cast<std::size_t>(a)] = side[a] > 0 ? (tree.along(a)[place] - cell.low[a]) / side[a] : 0;
+        at[static_cast<std::size_t>(a)] = side[a] > 0 ? (place[a] - cell.low[a]) / side[a] : 0;
     glm::vec4 sum(0);
     for (std::size_t i = 0; i < 8; ++i) {
         const PathImage& node = atNodes[cell.nodes[i]];

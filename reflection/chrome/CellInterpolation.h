@@ -29,8 +29,8 @@ void interpolateCells(const CellTree& tree, std::span<const PathImage> atNodes,
                       std::span<const SmoothCell> cells, std::span<VirtualVertex> image,
                       std::vector<std::uint32_t>& doubtful);
 
-/// One vertex of a cell (a place in tree.order()): as above, slowly.
+/// One place in a cell: as above, slowly.
 glm::vec4 interpolateIn(const CellTree& tree, std::span<const PathImage> atNodes, const CellTree::Cell& cell,
-                        std::uint32_t place);
+                        const glm::vec3& place);
 
 }  // namespace reflection

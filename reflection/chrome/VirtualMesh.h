@@ -1,33 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <span>
 #include <vector>
 
-#include "reflection/chrome/VirtualObject.h"
+#include "reflection/chrome/VirtualEdges.h"
 
 namespace reflection {
-
-struct VirtualMeshOptions {
-    VirtualOptions vertices = {};
-    /// Angle, seen from the eye, by which the middle of a reflected edge may lie off that of the straight one
-    /// that is drawn in its place: half a pixel of a 720-row view of 60 degrees.
-    double tolerance = 0.5 * 1.155 / 720;
-    /// An edge is halved no more often than this.
-    int mostHalvings = 6;
-    /// Half the angle of a cone around `towards` from the eye outside of which nothing is drawn, so that
-    /// edges there stay as they are; by default everything is.
-    glm::dvec3 towards{1, 0, 0};
-    double coneCosine = -2;
-};
-
-/// A vertex that was put on an edge.
-struct MiddleVertex {
-    std::uint32_t a, b;  ///< vertices before it, of the mesh or middles themselves
-    float share = 0.5f;  ///< of the way from a to b
-};
 
 /// A mesh's image in one piece of a reflector, ready to be drawn: its triangles with as many vertices in the
 /// middles of edges as the image's bends ask for. Reflections of straight edges are curves: without these a
@@ -56,24 +36,40 @@ class VirtualMesh {
     VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh,
                          const VirtualMeshOptions& options);
 
+    /// One of several meshes near a reflector, and how its update went.
+    struct Placed {
+        VirtualMesh* mesh = nullptr;
+        glm::dmat4 reflectorFromMesh{1};
+        VirtualMeshOptions options = {};
+        VirtualCounts counts = {};
+    };
+    /// The same for all that is drawn in a piece: one budget of searches (VirtualOptions::share) for the
+    /// vertices of all meshes and for those on their edges, which take what lies in a cell from there and are
+    /// searched for, the longest on screen first, where they do not. An edge for which nothing is left stays
+    /// as it is.
+    static void update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> meshes);
+
     std::size_t meshVertices() const { return positions.size(); }
     /// Of the mesh, then of middles.
-    std::span<const VirtualVertex> vertices() const { return image; }
+    std::span<const VirtualVertex> vertices() const { return edges.image; }
     /// Vertices on edges, in the order in which they follow the mesh's vertices: what else belongs to a
     /// vertex (normal, colour) is mixed from its ends'.
-    std::span<const MiddleVertex> middles() const { return added; }
-    std::span<const std::uint32_t> indices() const { return drawn; }
+    std::span<const MiddleVertex> middles() const { return edges.added; }
+    std::span<const std::uint32_t> indices() const { return edges.drawn; }
 
   private:
+    bool asOne(const ReflectorMap& map, const VirtualMeshOptions& options) const {
+        return map.bend() != Bend::concave || options.vertices.published.has_value();
+    }
     VirtualCounts updateConcave(const ReflectorMap& map, const glm::dvec3& eye,
                                 const glm::dmat4& reflectorFromMesh, const VirtualMeshOptions& options);
 
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> triangles;
-    VirtualObject object;
-    std::vector<VirtualVertex> image;
-    std::vector<MiddleVertex> added;
-    std::vector<std::uint32_t> drawn;
+    std::vector<std::uint32_t> placeOf;  ///< vertices
+    std::vector<glm::vec3> welded;       ///< positions, each once
+    VirtualObject object;                ///< of those
+    VirtualEdges edges;
 };
 
 }  // namespace reflection

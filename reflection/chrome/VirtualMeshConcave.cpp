@@ -28,6 +28,9 @@ VirtualCounts VirtualMesh::updateConcave(const ReflectorMap& map, const glm::dve
                                          const VirtualMeshOptions& options) {
     VirtualCounts counts;
     counts.vertices = positions.size();
+    std::vector<VirtualVertex>& image = edges.image;
+    std::vector<MiddleVertex>& added = edges.added;
+    std::vector<std::uint32_t>& drawn = edges.drawn;
     added.clear();
     drawn.clear();
     image.assign(positions.size(), {});

@@ -1,5 +1,7 @@
 #include "reflection/chrome/VirtualObject.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,6 +19,10 @@ bool finite(const glm::vec3& p) {
 glm::vec3 imageOf(const ReflectionPoint& r, const glm::dvec3& eye, const glm::dvec3& vertex) {
     return glm::vec3(virtualVertex(r, vertex) - eye);
 }
+
+/// Searches that one core answers at a time, where several do: as many as findReflectionPoints sorts
+/// together.
+constexpr std::size_t searchesATime = 256;
 
 /// Below this there is less to interpolate between the eight corners of one cell than to search for.
 constexpr std::size_t fewestVertices = 16;
@@ -40,6 +46,14 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                           const VirtualOptions& options, std::span<const glm::dvec3> guesses) {
     if (options.published)
         findReflectionPointsAsPublished(map, eye, vertices, points, *options.published);
+    else if (options.threads && vertices.size() >= 2 * searchesATime)
+        tbb::parallel_for(
+            std::size_t{0}, (vertices.size() + searchesATime - 1) / searchesATime, [&](std::size_t k) {
+                const std::size_t first = k * searchesATime;
+                const std::size_t n = std::min(searchesATime, vertices.size() - first);
+                findReflectionPoints(map, eye, vertices.subspan(first, n), points.subspan(first, n),
+                                     options.search, guesses.empty() ? guesses : guesses.subspan(first, n));
+            });
     else
         findReflectionPoints(map, eye, vertices, points, options.search, guesses);
 }
@@ -154,7 +168,13 @@ void VirtualObject::spend(std::span<Placed> objects, std::size_t reserve, std::s
         if (objects[o].object->cells) objects[o].object->cells->keepPending(kept[o]);
 }
 
-void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects) {
+void VirtualObject::tell(const VirtualOptions& options) {
+    settings = options;
+    if (cells) cells->tell(options);
+}
+
+void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects,
+                           double part) {
     VirtualOptions how;
     double budget = 0;
     std::size_t begun = 0;
@@ -168,12 +188,12 @@ void VirtualObject::update(const ReflectorMap& map, const glm::dvec3& eye, std::
         o.waits = true;
         if (o.grid) o.onGrid(map, eye, p.reflectorFromMesh, p.counts);
         if (o.cells) budget += o.settings.share * static_cast<double>(o.points.size());
-        bounded = bounded && !o.settings.beyondShare;
+        bounded = bounded && o.settings.bounded;
         how = o.settings;
         remembers = remembers || o.settings.remember;
     }
     constexpr std::size_t unbounded = SIZE_MAX / 2;
-    const std::size_t most = bounded ? static_cast<std::size_t>(std::max(budget, 0.0)) : unbounded;
+    const std::size_t most = bounded ? static_cast<std::size_t>(std::max(part * budget, 0.0)) : unbounded;
     for (Placed& p : objects) {
         if (!p.object->cells) continue;
         std::size_t searches = p.object->cells->begin(map, eye, p.reflectorFromMesh);

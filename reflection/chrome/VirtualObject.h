@@ -19,6 +19,9 @@ class VirtualObject {
     /// Positions in the mesh's frame, metres; those that are not finite become invalid virtual vertices.
     VirtualObject(std::vector<glm::vec3> positions, const VirtualOptions& options);
 
+    /// From the next update on; whether the share is 1 stays as it was made.
+    void tell(const VirtualOptions& options);
+
     /// Moves the image. `reflectorFromMesh`: rigid; eye in the reflector's frame. Cost: searches for at
     /// most the share (VirtualOptions), 3 ns for every other vertex.
     VirtualCounts update(const ReflectorMap& map, const glm::dvec3& eye, const glm::dmat4& reflectorFromMesh);
@@ -30,10 +33,15 @@ class VirtualObject {
         VirtualCounts counts = {};
     };
     /// The same for several at a time: searches are answered together, in full packets, and their shares are
-    /// one budget, spent where the image is farthest off.
-    static void update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects);
+    /// one budget, spent where the image is farthest off. `part`: of that budget; the rest is the caller's.
+    static void update(const ReflectorMap& map, const glm::dvec3& eye, std::span<Placed> objects,
+                       double part = 1);
 
     std::span<const VirtualVertex> vertices() const { return image; }
+    /// After an update: see CellImage::at. Nothing, where there are no cells.
+    std::optional<SeenInCell> at(const glm::vec3& point) const {
+        return cells ? cells->at(point) : std::nullopt;
+    }
 
   private:
     /// Adds searches to the batch; false: there are none (any more).

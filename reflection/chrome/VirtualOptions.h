@@ -8,17 +8,15 @@
 namespace reflection {
 
 struct VirtualOptions {
-    /// Budget of searches, as a share of the mesh's vertices (of all of them where several meshes are updated
-    /// together): cells are refined, those first that lie farthest off on screen, until none is off by more
-    /// than the tolerance or this is spent; what is left is interpolated in its cell. Searches are no more
-    /// than this and eight (the corners of its coarsest cell) for each mesh; an eighth is kept for cells that
-    /// were refined in the last update. Meshes of up to sixteen vertices are searched for whole. 1: every
-    /// vertex, without cells.
+    /// Budget of searches, as a share of the vertices of all meshes that are updated together (of those drawn
+    /// on their edges, too, where it is VirtualMeshes): cells are refined, those first that lie farthest off
+    /// on screen, until none is off by more than the tolerance or this is spent; what is left is interpolated
+    /// in its cell. Searches are no more than this and eight (the corners of its coarsest cell) for each
+    /// mesh; an eighth is kept for cells that were refined in the last update. Meshes of up to sixteen
+    /// vertices are searched for whole. 1: every vertex, without cells.
     double share = 0.096;
-    /// The tolerance is met whatever it takes; a share below 1 then only says that there are cells. What is
-    /// drawn mesh by mesh (VirtualMesh) does so: a share of a small mesh alone is too few (up to 200 pixels
-    /// off in the kitchen, where one budget for all things is off by 0.6).
-    bool beyondShare = false;
+    /// False: the tolerance is met whatever it takes, and a share below 1 only says that there are cells.
+    bool bounded = true;
     /// Angle, seen from the eye, by which a vertex that is not searched for may lie off: a quarter of a pixel
     /// of a 720-row view of 60 degrees.
     double cellTolerance = 0.25 * 1.155 / 720;
@@ -27,11 +25,21 @@ struct VirtualOptions {
     bool plainGrid = false;
     /// Start from what the last update has found.
     bool remember = true;
+    /// Searches of large batches run on all cores.
+    bool threads = false;
     SearchOptions search = {};
     /// Set: vertices are searched for as published instead, for comparison; see
     /// findReflectionPointsAsPublished.
     std::optional<PublishedOptions> published = {};
 };
+
+/// The same options with a budget; 0: none, what the tolerance takes is searched for, and the rest follows in
+/// cells.
+inline VirtualOptions withShare(VirtualOptions options, double share) {
+    options.bounded = share > 0;
+    options.share = options.bounded ? share : VirtualOptions().share;
+    return options;
+}
 
 /// One of both searches, as the options say.
 void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,

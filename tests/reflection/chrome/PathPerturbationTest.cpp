@@ -119,7 +119,8 @@ TEST(CellInterpolation, IsExactForCubicsAndAsItsSlowOracle) {
                 const std::uint32_t k = tree.order()[v];
                 EXPECT_EQ(image[k].status, ReflectionStatus::found);
                 EXPECT_LT(glm::length(image[k].fromEye - glm::vec3(value(points[k]))), 1e-4f);
-                EXPECT_LT(glm::length(interpolateIn(tree, atNodes, cell, v) - value(points[k])), 1e-4f);
+                EXPECT_LT(glm::length(interpolateIn(tree, atNodes, cell, points[k]) - value(points[k])),
+                          1e-4f);
             }
         }
         // Where the outline crosses cells, the sign of the fourth value tells, and what is near zero is told.

@@ -49,6 +49,7 @@ TEST(VirtualMesh, BendsTheReflectedEdgesOfBigTrianglesWithinTheTolerance) {
     const glm::dvec3 eye(0, -3, 1);
     for (const double tolerance : {4e-3, 1e-3, 4e-4}) {
         VirtualMeshOptions options;
+        options.vertices.bounded = false;
         options.tolerance = tolerance;
         options.mostHalvings = 9;
         VirtualMesh mesh(floorCorners, floorTriangles, options);
@@ -59,6 +60,7 @@ TEST(VirtualMesh, BendsTheReflectedEdgesOfBigTrianglesWithinTheTolerance) {
         EXPECT_LT(worstBend(mesh, placesOf(mesh, floorCorners), map, eye), 1.5 * tolerance);
     }
     VirtualMeshOptions stiff;
+    stiff.vertices.bounded = false;
     stiff.mostHalvings = 0;
     VirtualMesh mesh(floorCorners, floorTriangles, stiff);
     mesh.update(map, eye, glm::dmat4(1), stiff);
@@ -79,7 +81,7 @@ TEST(VirtualMesh, AFlatMirrorAsksForNoMiddles) {
 TEST(VirtualMesh, LeavesNoCracksAndCoversTheMesh) {
     const ReflectorMap map =
         buildReflectorMap(meshOf(ellipsoid({.4, .3, .4}), 100), {0, 0, 0}, Bend::convex).map;
-    const VirtualMeshOptions options;
+    const VirtualMeshOptions options{.vertices = {.bounded = false}};
     VirtualMesh mesh(floorCorners, floorTriangles, options);
     mesh.update(map, {0, -3, 3}, glm::dmat4(1), options);
     const std::vector<glm::dvec3> places = placesOf(mesh, floorCorners);
@@ -115,6 +117,7 @@ TEST(VirtualMesh, BigTrianglesWithHiddenCornersCoverOnlyWhatTheyReach) {
     const std::vector<glm::vec3> corners{{1.5f, -.5f, -.6f}, {.2f, 3, -.6f}, {-.2f, 2, -.6f}, {2, 3, -.6f}};
     const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 3, 1};
     VirtualMeshOptions options;
+    options.vertices.bounded = false;
     options.mostHalvings = 8;
     VirtualMesh mesh(corners, triangles, options);
     mesh.update(map, eye, glm::dmat4(1), options);
@@ -156,6 +159,87 @@ struct Panel {
     std::vector<std::uint32_t> triangles;
 };
 
+/// A ball, and a wall of fine squares of which the outline hides a part, each with corners of its own.
+struct Checkered {
+    ReflectorMap map = buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 100), {0, 0, 0}, Bend::convex).map;
+    glm::dvec3 eye{0, -3, .6};
+    std::vector<glm::vec3> corners;
+    std::vector<std::uint32_t> triangles;
+
+    Checkered() {
+        constexpr int across = 48;
+        constexpr float side = .05f;
+        for (int j = 0; j < across; ++j)
+            for (int i = 0; i < across; ++i) {
+                const auto first = static_cast<std::uint32_t>(corners.size());
+                for (int k = 0; k < 4; ++k)
+                    corners.push_back(side *
+                                      glm::vec3(float(i + (k & 1)), 0, float(j + (k >> 1)) - .5f * across));
+                triangles.insert(triangles.end(), {first, first + 1, first + 3, first, first + 3, first + 2});
+            }
+    }
+    glm::dmat4 at(const glm::dvec3& place) const {
+        glm::dmat4 m(1);
+        m[3] = glm::dvec4(place, 1);
+        return m;
+    }
+};
+
+TEST(VirtualMesh, AllThatAPieceShowsHasOneBudgetAndKeepsToIt) {
+    const Checkered wall;
+    const std::vector<glm::dmat4> places{wall.at({.2, 1, 0}), wall.at({.5, -.2, 0}), wall.at({-2.9, .3, 0})};
+    for (const double share : {.02, .041, .096, .143, .5}) {
+        VirtualMeshOptions options;
+        options.vertices.share = share;
+        std::vector<VirtualMesh> meshes(places.size(), VirtualMesh(wall.corners, wall.triangles, options));
+        meshes.emplace_back(floorCorners, floorTriangles, options);
+        std::vector<VirtualMesh::Placed> placed;
+        for (std::size_t k = 0; k < meshes.size(); ++k)
+            placed.push_back({&meshes[k], k < places.size() ? places[k] : glm::dmat4(1), options, {}});
+        VirtualMesh::update(wall.map, wall.eye, placed);
+        std::size_t searched = 0, drawn = 0;
+        for (const VirtualMesh::Placed& p : placed) {
+            searched += p.counts.searched;
+            drawn += p.counts.vertices + p.mesh->middles().size();
+            ASSERT_GT(p.mesh->indices().size(), 0U);
+            for (const VirtualVertex& v : p.mesh->vertices())
+                ASSERT_TRUE(std::isfinite(v.fromEye.x + v.fromEye.y + v.fromEye.z));
+        }
+        EXPECT_LE(double(searched), share * double(drawn) + 8.0 * double(meshes.size())) << share;
+    }
+}
+
+TEST(VirtualMesh, PlacesOnEdgesFollowFromCellsAsIfTheyWereSearchedFor) {
+    const Checkered wall;
+    const glm::dmat4 place = wall.at({.2, 1, 0});
+    VirtualMeshOptions some, all;
+    some.vertices.bounded = false;
+    all.vertices.share = 1;
+    VirtualMesh few(wall.corners, wall.triangles, some), whole(wall.corners, wall.triangles, all);
+    const VirtualCounts searched = few.update(wall.map, wall.eye, place, some),
+                        everywhere = whole.update(wall.map, wall.eye, place, all);
+    EXPECT_GT(whole.middles().size(), 50U);
+    EXPECT_LT(searched.searched, everywhere.searched / 5);
+    // Corners of one place are searched for once.
+    EXPECT_EQ(everywhere.vertices, 49U * 49U);
+    EXPECT_NEAR(double(few.indices().size()), double(whole.indices().size()),
+                .01 * double(whole.indices().size()));
+    // Each place on an edge is where it is truly seen, or past the outline by the tolerance.
+    std::vector<glm::dvec3> places = placesOf(few, wall.corners);
+    std::size_t seen = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const glm::dvec3 at(place * glm::dvec4(places[k], 1));
+        ReflectionPoint r;
+        findReflectionPoints(wall.map, wall.eye, std::span(&at, 1), std::span(&r, 1));
+        const VirtualVertex& v = few.vertices()[k];
+        if (r.status != ReflectionStatus::found || v.status == ReflectionStatus::hidden) continue;
+        ++seen;
+        EXPECT_LT(glm::length(glm::normalize(r.point - wall.eye) - glm::normalize(glm::dvec3(v.fromEye))),
+                  2 * some.tolerance);
+    }
+    EXPECT_GT(seen, wall.corners.size() / 4);
+}
+
 TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
     const ReflectorMap map =
         buildReflectorMap(meshOf(ellipsoid({1, 1, 1}), 100, 2.0, glm::pi<double>(), true), {0, 0, 0},
@@ -164,6 +248,7 @@ TEST(VirtualMesh, LeavesOutWhatIsTornBetweenTwoPointsOfABowl) {
     // A panel through the region where the bowl shows things several times.
     const Panel panel({-.8f, .3f, -.7f}, .2f);
     VirtualMeshOptions options;
+    options.vertices.bounded = false;
     options.mostHalvings = 3;
     VirtualMesh mesh(panel.corners, panel.triangles, options);
     const glm::dvec3 eye(.1, -.5, 1.5);
@@ -186,6 +271,7 @@ TEST(VirtualMesh, ShowsEveryImageInABowlWhereItIs) {
     // Followed from a few places that are searched everywhere, as from all of them.
     for (const double share : {1.0, 0.1}) {
         VirtualMeshOptions options;
+        options.vertices.bounded = false;
         options.vertices.share = share;
         VirtualMesh mesh(panel.corners, panel.triangles, options);
         const glm::dvec3 eye(.1, -.5, 1.5);
@@ -229,6 +315,7 @@ TEST(VirtualMesh, OutsideItsConeEdgesStayAsTheyAre) {
     const ReflectorMap map =
         buildReflectorMap(meshOf(ellipsoid({.4, .4, .4}), 60), {0, 0, 0}, Bend::convex).map;
     VirtualMeshOptions options;
+    options.vertices.bounded = false;
     options.towards = {0, 0, 1};
     options.coneCosine = 0.9;
     VirtualMesh mesh(floorCorners, floorTriangles, options);
