@@ -28,7 +28,7 @@ std::vector<Bench> allBenches() {
           cellOption | pictureOptions},
          benchEmpty},
         {{"governor", "a budget held through a step from 10 to 200 cars on screen and back",
-          budgetOption | cellOption | mirrorOptions | pictureOptions},
+          budgetOption | cellOption | mirrorOptions | chromeOptions | pictureOptions},
          benchGovernor},
         {{"kerbside",
           "chrome bumper and wheel cover with a cyclist passing at 0.3 m, or the views of --staged "

@@ -35,7 +35,7 @@ struct Frames {
 
 struct Phase {
     std::uint32_t cars = 0, visible = 0;
-    double position = 0, error = 0;
+    double position = 0, error = 0, chromeJobs = 0;
     std::string givenUp;
     Frames governed, finest, settled;
 };
@@ -115,6 +115,19 @@ int benchGovernor(const Options& options) {
     CityMirrors mirrors = cityMirrors(stage.scene, options);
     settings.mirrors = &mirrors;
     if (mirrors.any()) stage.renderer.setGlass(stage.scene.glass.fronts);
+    // Close chrome as the program has it.
+    std::unique_ptr<CloseScene> close;
+    if (options.chrome) {
+        close = std::make_unique<CloseScene>(stage.scene.city, stage.scene.models);
+        close->parts.keepIn(cacheFolder() / "chrome",
+                            [](const std::string& text) { spdlog::warn("{}", text); });
+        stage.renderer.setCloseScene(close.get());
+        settings.close = close.get();
+        settings.chromeBounces = options.chromeBounces;
+    }
+    ChromeDrawing chromeDrawing;
+    chromeDrawing.share = options.chromeShare;
+    chromeDrawing.bounces = options.chromeBounces;
     const Stopwatch calibrating;
     const Calibration calibration =
         calibrate(stage.scene, stage.scene.lighting, stage.reflections, stage.renderer, settings);
@@ -133,7 +146,8 @@ int benchGovernor(const Options& options) {
     reflecting.gpuMapBytes = options.gpuMapBytes();
     const auto makePlay = [&](SceneRenderer& renderer) {
         return std::make_unique<GovernorPlay>(stage.scene, stage.reflections, renderer, manyCars,
-                                              options.seed, options.resolution, reflecting, mirrors);
+                                              options.seed, options.resolution, reflecting, mirrors,
+                                              close.get(), chromeDrawing);
     };
     const auto governed = makePlay(stage.renderer), unchanged = makePlay(controlRenderer),
                settled = makePlay(controlRenderer);
@@ -159,6 +173,7 @@ int benchGovernor(const Options& options) {
     for (const std::uint32_t cars : {fewCars, manyCars, fewCars}) {
         Phase& phase = phases.emplace_back();
         phase.cars = cars;
+        const std::uint64_t jobsBefore = governed->chromeJobs();
         play(*governed, cars, phase.governed, true, [&](GovernorPlay& what) {
             const FrameCost cost = what.draw(governor);
             phase.visible = static_cast<std::uint32_t>(cost.reflecting);
@@ -166,6 +181,7 @@ int benchGovernor(const Options& options) {
             phase.governed.position.push_back(governor.position());
             return cost;
         });
+        phase.chromeJobs = static_cast<double>(governed->chromeJobs() - jobsBefore) / phaseFrames;
         phase.position = governor.position();
         phase.error = governor.predictedError();
         phase.givenUp = governor.givenUp();
@@ -196,6 +212,7 @@ int benchGovernor(const Options& options) {
                      {"width", options.resolution.x},
                      {"height", options.resolution.y},
                      {"windows", mirrors.any()},
+                     {"chrome_jobs", phase.chromeJobs},
                      {"budget_ms", budget},
                      {"frame_ms", toJson(timingOf(frameMs))},
                      {"frame_ms_95", quantile(frameMs, 0.95)},

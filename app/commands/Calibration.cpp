@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <glm/trigonometric.hpp>
@@ -12,6 +13,7 @@
 #include <sstream>
 #include <thread>
 
+#include "app/commands/ChromeClip.h"
 #include "app/commands/DetailBench.h"
 #include "app/frame/AssembleFrame.h"
 #include "app/frame/CameraRig.h"
@@ -27,12 +29,16 @@ namespace app {
 namespace {
 
 /// Changes when the measuring does.
-constexpr int calibrationVersion = 11;
+constexpr int calibrationVersion = 12;
 /// Many: what is given up first must help where there are many.
 constexpr std::uint32_t calibrationCars = 120;
 constexpr double frameStep = 1.0 / 25;
 /// Share of the finest frame that a step must save: less is noise.
 constexpr double leastSaving = 0.01;
+/// Share that a rung must be expected to save over those that lose less, to be measured.
+constexpr double leastStep = 0.04;
+/// Share of frames in which chrome is taken to be as near as in the clip for it: as one clip of three.
+constexpr double chromeShare = 1.0 / 3;
 /// Where the fastest times scatter more than this however often they are repeated, nothing is kept for later
 /// runs.
 constexpr double steadyEnough = 0.15;
@@ -87,7 +93,8 @@ Detail finestDetail(const CityMirrors* mirrors) {
 }
 
 /// Each knob turned down alone, fine to coarse.
-std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirrors, bool chrome) {
+std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirrors, bool chrome,
+                             bool bounces) {
     std::vector<Trial> trials;
     const auto add = [&](Knob knob, std::initializer_list<double> values) {
         for (const double value : values) trials.push_back({knob, value, 0, 0});
@@ -104,7 +111,8 @@ std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirro
     // budget (medians of 11.7 to 13.8 ms of 16.1).
     add(Knob::scale, {0.92, 0.85, 0.77, 0.7, 0.65, 0.6, 0.55, 0.5, 0.42, 0.35});
     if (antialiasing == Antialiasing::fxaa) add(Knob::antialiasing, {0.5, 0});
-    // Not all of it: the clips have little, and would have close-ups lose theirs first.
+    // Not all of it: close-ups would lose theirs. What chrome shows of other chrome may go.
+    if (chrome && bounces) add(Knob::bouncePixels, {48, 96, ChromeDetail::none});
     if (chrome) add(Knob::chromePixels, {48, 96, 192});
     if (mirrors == nullptr) return trials;
     // One reflection less is one picture less: from half of them to none.
@@ -114,6 +122,85 @@ std::vector<Trial> trialsFor(Antialiasing antialiasing, const CityMirrors* mirro
     for (const double maps : {4, 2, 1, 0})
         if (maps < most.maps) trials.push_back({Knob::mirrorMaps, maps, 0, 0});
     return trials;
+}
+
+bool ofChrome(Knob knob) {
+    return knob == Knob::chromePixels || knob == Knob::bouncePixels;
+}
+
+/// What pictures of other sizes cost and lose lies between those that are measured.
+bool measured(const Trial& trial) {
+    if (trial.knob != Knob::scale) return true;
+    constexpr std::array<double, 3> scales{0.77, 0.55, 0.35};
+    return std::ranges::find(scales, trial.value) != scales.end();
+}
+
+/// By the number of pixels.
+void interpolateSizes(std::vector<Trial>& trials) {
+    const auto pixels = [](const Trial& t) { return t.value * t.value; };
+    for (Trial& trial : trials) {
+        if (measured(trial)) continue;
+        Trial above{Knob::scale, 1, 0, 0}, below = above;
+        for (const Trial& t : trials) {
+            if (t.knob != Knob::scale || !measured(t)) continue;
+            if (t.value > trial.value && t.value < above.value) above = t;
+            if (t.value < trial.value && (below.value == 1 || t.value > below.value)) below = t;
+        }
+        const double way = (pixels(above) - pixels(trial)) / (pixels(above) - pixels(below));
+        trial.savedMs = above.savedMs + way * (below.savedMs - above.savedMs);
+        trial.lost = above.lost + way * (below.lost - above.lost);
+    }
+}
+
+/// What a detail saves and loses against the finest, by the trials of its knobs.
+struct Expected {
+    double savedMs = 0, lost = 0;
+};
+template <typename Counts>
+Expected expectedOf(Detail detail, std::span<const Trial> trials, const Counts& counts) {
+    Expected sum;
+    for (const Trial& t : trials) {
+        if (!counts(t.knob) || valueOf(detail, t.knob) != t.value) continue;
+        sum.savedMs += t.savedMs;
+        sum.lost += std::max(t.lost, 0.0);
+    }
+    return sum;
+}
+
+/// Those details of an order, and of its cheapest of the full size in all others, that are worth measuring:
+/// by the trials, none that loses less costs as little. An order begins anew with each size of the picture,
+/// so that most of it costs more than what went before.
+std::vector<Detail> worthMeasuring(const std::vector<Detail>& order, std::span<const Trial> trials,
+                                   double finestMs) {
+    struct Rated {
+        const Detail* detail;
+        double ms, lost;
+    };
+    std::vector<Rated> rated;
+    std::vector<Detail> all = order;
+    const auto fullSize = [](const Detail& d) { return d.drawing.scale == 1; };
+    Detail small = *std::ranges::find_if(order.rbegin(), order.rend(), fullSize);
+    for (const Trial& trial : trials) {
+        if (trial.knob != Knob::scale) continue;
+        small.drawing.scale = trial.value;
+        all.push_back(small);
+    }
+    for (const Detail& detail : all) {
+        const Expected size = expectedOf(detail, trials, [](Knob k) { return k == Knob::scale; }),
+                       other = expectedOf(detail, trials, [](Knob k) { return k != Knob::scale; });
+        const double left = std::max(1 - size.savedMs / finestMs, 0.0);
+        rated.push_back({&detail, left * (finestMs - other.savedMs), size.lost + other.lost});
+    }
+    std::stable_sort(rated.begin(), rated.end(),
+                     [](const Rated& a, const Rated& b) { return a.lost < b.lost; });
+    std::vector<Detail> worth{all.front()};
+    double least = finestMs;
+    for (const Rated& r : rated) {
+        if (r.detail == &all.front() || !(r.ms < (1 - leastStep) * least)) continue;
+        worth.push_back(*r.detail);
+        least = r.ms;
+    }
+    return worth;
 }
 
 std::string keyOf(const Scene& scene, const CalibrationOptions& options) {
@@ -129,7 +216,7 @@ std::string keyOf(const Scene& scene, const CalibrationOptions& options) {
     if (const CityMirrors* mirrors = mirrorsOf(options))
         key << "; windows " << mirrors->most().maps << " in a row " << mirrors->most().depth
             << (mirrors->wet() ? "; wet" : "");
-    if (options.close != nullptr) key << "; close chrome up to 192 pixels";
+    if (options.close != nullptr) key << "; close chrome, bounces " << options.chromeBounces;
     return key.str();
 }
 
@@ -212,7 +299,8 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
         }
     }
 
-    std::vector<Trial> trials = trialsFor(options.antialiasing, mirrorsOf(options), options.close != nullptr);
+    std::vector<Trial> trials = trialsFor(options.antialiasing, mirrorsOf(options), options.close != nullptr,
+                                          options.chromeBounces > 1);
     const std::vector<Clip> clips = recordClips(scene, lighting, options);
     // The rungs are about as many as the trials, not known before.
     const std::size_t steps = 2 * DetailBench::steps(clips.size(), 1 + trials.size());
@@ -227,21 +315,54 @@ Calibration calibrate(const Scene& scene, const Lighting& lighting, const Prepar
     ReflectionSettings reflecting;
     reflecting.mapsOn = options.mapsOn;
     reflecting.gpuMapBytes = options.gpuMapBytes;
-    DetailBench bench(scene, prepared, renderer, reflecting, clips, options.mirrors, options.close);
+    DetailBench bench(scene, prepared, renderer, reflecting, clips, options.mirrors, options.close,
+                      options.chromeBounces);
 
     const Detail full = finestDetail(mirrorsOf(options));
-    std::vector<Detail> alone{full};
-    for (const Trial& trial : trials) valueOf(alone.emplace_back(full), trial.knob) = trial.value;
-    const std::vector<DetailBench::Measured> tried = bench.measure(alone, goOn);
-    if (tried.empty()) return calibration;
-    const Rung& finest = tried.front().rung;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        trials[i].savedMs = finest.ms() - tried[i + 1].rung.ms();
-        trials[i].lost = tried[i + 1].rung.loss() - finest.loss();
+    // Each knob where it shows: streets have little chrome that is near.
+    const auto measureTrials = [&](DetailBench& by, double share, const auto& belongs) {
+        std::vector<Detail> alone{full};
+        for (const Trial& trial : trials)
+            if (belongs(trial)) valueOf(alone.emplace_back(full), trial.knob) = trial.value;
+        const std::vector<DetailBench::Measured> tried = by.measure(alone, goOn);
+        if (tried.empty()) return -1.0;
+        std::size_t next = 1;
+        const Rung& finest = tried.front().rung;
+        for (Trial& trial : trials) {
+            if (!belongs(trial)) continue;
+            const Rung& rung = tried[next++].rung;
+            trial.savedMs = share * (finest.ms() - rung.ms());
+            trial.lost = share * (rung.loss() - finest.loss());
+        }
+        return finest.ms();
+    };
+    const double finestMs =
+        measureTrials(bench, 1, [](const Trial& t) { return measured(t) && !ofChrome(t.knob); });
+    if (finestMs < 0) return calibration;
+    interpolateSizes(trials);
+    if (options.close != nullptr) {
+        const Clip near = chromeClip(scene, *options.close, clips.front(), options.resolution);
+        if (!near.empty()) {
+            DetailBench nearby(scene, prepared, renderer, reflecting, {&near, 1}, options.mirrors,
+                               options.close, options.chromeBounces);
+            if (measureTrials(nearby, chromeShare, [](const Trial& t) { return ofChrome(t.knob); }) < 0)
+                return calibration;
+        }
     }
-    const std::vector<DetailBench::Measured> inOrder =
-        bench.measure(orderOfGivingUp(full, trials, leastSaving * finest.ms()), goOn);
+    std::vector<DetailBench::Measured> inOrder = bench.measure(
+        worthMeasuring(orderOfGivingUp(full, trials, leastSaving * finestMs), trials, finestMs), goOn);
     if (inOrder.empty()) return calibration;
+    // Chrome that is near is not in those clips: it has its share of the pixels.
+    Detail without = full;
+    for (const Trial& trial : trials)
+        if (ofChrome(trial.knob)) valueOf(without, trial.knob) = trial.value;
+    const double most = expectedOf(without, trials, ofChrome).savedMs;
+    for (DetailBench::Measured& m : inOrder) {
+        const Expected chrome = expectedOf(m.rung.detail, trials, ofChrome);
+        const double scale = m.rung.detail.drawing.scale;
+        m.rung.drawingMs += scale * scale * std::max(most - chrome.savedMs, 0.0);
+        m.rung.pictureError += chrome.lost;
+    }
     calibration.scatter = bench.scatter();
     calibration.ladder = DetailLadder(withJumps(bench, inOrder), bench.vehicleCost());
     calibration.complete = true;

@@ -26,6 +26,7 @@ struct CalibrationOptions {
     CityMirrors* mirrors = nullptr;
     /// Close chrome is drawn and goes up and down the ladder; null: not. The renderer has it.
     const CloseScene* close = nullptr;
+    int chromeBounces = 1;  ///< see ChromeDrawing; more go up and down the ladder, too
     std::string renderer;  ///< GL_RENDERER: what is measured holds for it alone
     bool useCache = true;
     std::filesystem::path cache;  ///< empty: the user's cache folder

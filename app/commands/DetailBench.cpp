@@ -49,13 +49,14 @@ reflection::FlipImage seen(const std::vector<glm::vec3>& pixels, glm::ivec2 size
 
 DetailBench::DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                          const ReflectionSettings& settings, std::span<const Clip> clips,
-                         CityMirrors* mirrors, const CloseScene* close)
+                         CityMirrors* mirrors, const CloseScene* close, int chromeBounces)
     : scene_(scene),
       prepared_(prepared),
       renderer_(renderer),
       settings_(settings),
       mirrors_(mirrors != nullptr && mirrors->any() ? mirrors : nullptr),
       close_(close),
+      chromeBounces_(chromeBounces),
       clips_(clips),
       target_(clips.front().front().views.front().size) {
     if (mirrors_ != nullptr) full_.mirrors = mirrors_->most();
@@ -196,6 +197,8 @@ std::pair<double, double> DetailBench::draw(const FrameScene& frame, ReflectionE
     // Each detail pays for its own, though all draw the same frames in turn.
     ChromeDrawing anew;
     anew.keep = false;
+    anew.bounces = chromeBounces_;
+    anew.bouncePixels = detail.chrome.bouncePixels;
     renderer_.drawView(view, reflections, target_.framebuffer(), planar, {&chrome, 0, anew});
     finishDrawing();
     return {watch.elapsed() - reflectionMs, reflectionMs};

@@ -38,7 +38,7 @@ class DetailBench {
     /// which the renderer has; may be null.
     DetailBench(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                 const ReflectionSettings& settings, std::span<const Clip> clips,
-                CityMirrors* mirrors = nullptr, const CloseScene* close = nullptr);
+                CityMirrors* mirrors = nullptr, const CloseScene* close = nullptr, int chromeBounces = 1);
 
     /// Units of work of a call of `measure`, for `goOn`, which is called after each and
     /// ends all by false.
@@ -83,6 +83,7 @@ class DetailBench {
     ReflectionSettings settings_;
     CityMirrors* mirrors_;
     const CloseScene* close_;
+    int chromeBounces_;
     Detail full_;  ///< what is measured against
     std::span<const Clip> clips_;
     OffscreenTarget target_;

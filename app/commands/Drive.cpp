@@ -115,6 +115,7 @@ void Drive::govern(const CarryOn& calibrating) {
         if (settings_.chrome) {
             makeCloseScene();
             options.close = closeScene_.get();
+            options.chromeBounces = settings_.chromeBounces;
         }
         const Stopwatch watch;
         Calibration calibration = calibrate(*scene_, lighting_, prepared_, *renderer_, options);
@@ -296,6 +297,7 @@ FrameStats Drive::drawFrame(const View& view, std::uint32_t framebuffer) {
     chromeDrawing.share = settings_.chromeShare;
     chromeDrawing.bounces = settings_.chromeBounces;
     chromeDrawing.wait = waitForChrome_;
+    if (governor_) chromeDrawing.bouncePixels = governor_->detail().chrome.bouncePixels;
     renderer_->drawView(view, reflections_, framebuffer, planar, {&chrome, 0, chromeDrawing});
     stats.frameMs = timer_.end();
     stats.drawn = renderer_->counters();
@@ -341,7 +343,8 @@ bool Drive::change(const DriveSettings& wanted, const CarryOn& carryOn, const Ca
         ladder_.reset();
     }
     // What was measured with windows, rain or close chrome does not hold without.
-    if (wanted.mirrors != old.mirrors || wanted.weather != old.weather || wanted.chrome != old.chrome)
+    if (wanted.mirrors != old.mirrors || wanted.weather != old.weather || wanted.chrome != old.chrome ||
+        wanted.chromeBounces != old.chromeBounces)
         ladder_.reset();
     const bool relit = wanted.hour != old.hour;
     const Lighting lighting =

@@ -76,13 +76,17 @@ double jump(const Image8& from, const Image8& to) {
 
 GovernorPlay::GovernorPlay(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                            std::uint32_t mostCars, std::uint64_t seed, glm::ivec2 resolution,
-                           const ReflectionSettings& settings, const CityMirrors& mirrors)
+                           const ReflectionSettings& settings, const CityMirrors& mirrors,
+                           const CloseScene* close, const ChromeDrawing& chrome)
     : scene_(scene),
       renderer_(renderer),
       target_(resolution),
       set_(setCarsStage(scene, renderer, mostCars, seed, resolution)),
       engine_(*prepared.tracer, prepared.maps, scene.models, settings),
-      mirrors_(mirrors) {
+      mirrors_(mirrors),
+      close_(close),
+      chrome_(chrome) {
+    renderer.setCloseScene(close);
     if (mirrors_.any()) renderer.setGlass(scene.glass.fronts);
 }
 
@@ -117,7 +121,19 @@ FrameCost GovernorPlay::draw(const Detail* fixed, Governor* governor) {
     const Stopwatch reflecting;
     const ReflectionPlan& plan = engine_.update(frame_, seen, renderer_);
     const double reflectionMs = reflecting.elapsed();
-    renderer_.drawView(set_.view, {engine_.textures(), plan.slots}, target_.framebuffer(), planar);
+    ChromePlan chrome;
+    if (close_ != nullptr) {
+        std::vector<std::uint32_t> indices;
+        for (const SeenVehicle& v : seen) indices.push_back(v.index);
+        ChromePlanOptions options;
+        options.leastPixels = detail.chrome.leastPixels;
+        chrome = planChrome(frame_, indices, scene_.models, close_->parts, options, &fades_);
+        fades_.follow(chrome);
+        chrome_.bouncePixels = detail.chrome.bouncePixels;
+        chromeJobs_ += chrome.jobs.size();
+    }
+    renderer_.drawView(set_.view, {engine_.textures(), plan.slots, 0, renewedBy(plan)}, target_.framebuffer(),
+                       planar, {close_ != nullptr ? &chrome : nullptr, 0, chrome_});
     finishDrawing();
     const FrameCost cost{watch.elapsed(), reflectionMs, plan.visible, plan.texels};
     if (governor != nullptr) governor->observe(cost);

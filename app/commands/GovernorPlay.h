@@ -10,6 +10,8 @@
 #include "app/commands/LoadScene.h"
 #include "app/commands/PreparedReflections.h"
 #include "app/display/OffscreenTarget.h"
+#include "app/frame/ChromePlan.h"
+#include "app/frame/CloseScene.h"
 #include "app/frame/Governor.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/render/Readback.h"
@@ -22,10 +24,11 @@ namespace app {
 class GovernorPlay {
   public:
     /// Keeps references to all but the settings. `renderer`: of its own, for it hides changes of detail from
-    /// one picture to the next.
+    /// one picture to the next. `close`: what chrome shows, as the program does it; null: nothing.
     GovernorPlay(const Scene& scene, const PreparedReflections& prepared, SceneRenderer& renderer,
                  std::uint32_t mostCars, std::uint64_t seed, glm::ivec2 resolution,
-                 const ReflectionSettings& settings, const CityMirrors& mirrors);
+                 const ReflectionSettings& settings, const CityMirrors& mirrors, const CloseScene* close,
+                 const ChromeDrawing& chrome);
 
     /// False: the city has no street to look down.
     bool possible() const { return set_.traffic.has_value(); }
@@ -36,6 +39,8 @@ class GovernorPlay {
     FrameCost draw(Governor& governor);
 
     Image8 picture() const { return readPixels(target_.framebuffer(), target_.size()); }
+    /// Of all frames so far.
+    std::uint64_t chromeJobs() const { return chromeJobs_; }
     const ReflectionCounters& counters() const { return engine_.counters(); }
 
   private:
@@ -47,6 +52,10 @@ class GovernorPlay {
     CarsStage set_;
     ReflectionEngine engine_;
     CityMirrors mirrors_;
+    const CloseScene* close_;
+    ChromeDrawing chrome_;
+    ChromeFades fades_;
+    std::uint64_t chromeJobs_ = 0;
     FrameScene frame_;
 };
 

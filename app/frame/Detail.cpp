@@ -52,7 +52,8 @@ Detail blend(const Detail& a, const Detail& b, double t) {
                       byRatio(a.drawing.vehicleTolerance, b.drawing.vehicleTolerance, t)};
     detail.mirrors = {byRatio(a.mirrors.texels, b.mirrors.texels, t),
                       evenly(a.mirrors.maps, b.mirrors.maps, t), evenly(a.mirrors.depth, b.mirrors.depth, t)};
-    detail.chrome.leastPixels = byRatio(a.chrome.leastPixels, b.chrome.leastPixels, t);
+    detail.chrome = {byRatio(a.chrome.leastPixels, b.chrome.leastPixels, t),
+                     byRatio(a.chrome.bouncePixels, b.chrome.bouncePixels, t)};
     return detail;
 }
 
@@ -92,11 +93,15 @@ std::string givenUp(const Detail& full, const Detail& now) {
     };
     count("reflections in windows: ", fullMirrors.maps, nowMirrors.maps);
     count("windows in a row: ", fullMirrors.depth, nowMirrors.depth);
-    if (now.chrome.leastPixels > full.chrome.leastPixels)
-        add(now.chrome.leastPixels >= ChromeDetail::none
-                ? "no close things in chrome"
-                : "close things in chrome from " + number(now.chrome.leastPixels, "%.0f") +
-                      " pixels on, not " + number(full.chrome.leastPixels, "%.0f"));
+    const auto chrome = [&](const char* what, double before, double after) {
+        if (!(after > before)) return;
+        const std::string things = std::string("close things in ") + what;
+        add(after >= ChromeDetail::none
+                ? "no " + things
+                : things + " from " + number(after, "%.0f") + " pixels on, not " + number(before, "%.0f"));
+    };
+    chrome("chrome", full.chrome.leastPixels, now.chrome.leastPixels);
+    chrome("chrome seen in chrome", full.chrome.bouncePixels, now.chrome.bouncePixels);
     return text;
 }
 

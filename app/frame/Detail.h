@@ -52,6 +52,8 @@ struct ChromeDetail {
     /// Width on screen, pixels, from which on a part does; it does wholly from twice as much. Half of it and
     /// less: the local map is no worse to be seen (bench kerbside: FLIP within 0.01).
     double leastPixels = 24;
+    /// The same of chrome seen in other chrome, where that shows close things, too.
+    double bouncePixels = 24;
     static constexpr double none = 4096;  ///< no part is so large
 
     bool operator==(const ChromeDetail&) const = default;

@@ -114,6 +114,8 @@ double& valueOf(Detail& detail, Knob knob) {
             return detail.mirrors.depth;
         case Knob::chromePixels:
             return detail.chrome.leastPixels;
+        case Knob::bouncePixels:
+            return detail.chrome.bouncePixels;
         case Knob::vehicleTolerance:
             break;
     }

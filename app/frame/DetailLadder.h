@@ -78,10 +78,12 @@ enum class Knob : std::uint8_t {
     mirrorMaps,
     mirrorDepth,
     chromePixels,
+    bouncePixels,
 };
-inline constexpr std::array<std::string_view, 12> knobNames{
-    "texel budget", "texels a pixel",    "error threshold", "candidates",  "lookups",      "scale",
-    "antialiasing", "vehicle tolerance", "mirror texels",   "mirror maps", "mirror depth", "chrome pixels"};
+inline constexpr std::array<std::string_view, 13> knobNames{
+    "texel budget", "texels a pixel", "error threshold",   "candidates",    "lookups",
+    "scale",        "antialiasing",   "vehicle tolerance", "mirror texels", "mirror maps",
+    "mirror depth", "chrome pixels",  "bounce pixels"};
 double& valueOf(Detail& detail, Knob knob);
 
 /// A knob turned down alone, from the finest detail, and what that was measured to save and to lose.
