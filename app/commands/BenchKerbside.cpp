@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "app/commands/Benches.h"
@@ -27,6 +28,9 @@ constexpr std::array<std::string_view, 6> methods{"truth", "none", "mem", "chrom
 constexpr std::uint32_t framesOfMotion = 12;
 constexpr double frameTime = 1.0 / 30;  ///< seconds
 constexpr double approach = 0.08;       ///< metres a frame: somebody walks up to it
+/// From where the part is too small to show close things until it does wholly, and back.
+constexpr std::uint32_t framesOfApproach = 40;
+constexpr double approachFrom = 0.5, approachTo = 2.5;  ///< of the size at which it begins to
 
 /// Pixels of the chrome of one vehicle.
 CloseViews::Counts chromeOf(const KerbsideShot& shot) {
@@ -50,6 +54,19 @@ void measureMoving(const Options& options, CloseViews& views, const Scene& scene
             return frame;
         },
         framesOfMotion, chromeOf(shot), results, table);
+    if (interrupted()) return;
+    // By size, so that each frame brings the same share of the change.
+    const double begins = shot.pixels / ChromeDetail{}.leastPixels * shot.away;
+    measureMotion(
+        options, views, shot.name + ", eye comes and goes",
+        [&](std::uint32_t k) {
+            const double t = 1 - std::abs(2.0 * k / (framesOfApproach - 1) - 1);
+            const double size = approachFrom * std::pow(approachTo / approachFrom, t);
+            FrameScene frame = shot.frame;
+            frame.views.front().eye += std::max(begins / size - shot.away, 0.0) * back;
+            return frame;
+        },
+        framesOfApproach, chromeOf(shot), results, table);
     if (interrupted() || !(shot.apart > 0)) return;
     measureMotion(
         options, views, shot.name + ", passed by",
@@ -66,6 +83,11 @@ void measureMoving(const Options& options, CloseViews& views, const Scene& scene
 int benchKerbside(const Options& asked) {
     Options options = asked;
     if (!options.staged) options.staged = reflection::gl::dataFolder() / "staged" / "kerbside.json";
+    if (!asked.staged && asked.city != Options().city)
+        spdlog::warn(
+            "kerbside.json stages the boulevard's street; in {} its vehicles stand at the same metres, "
+            "wherever that is: name vehicles of this city with --staged FILE.json",
+            asked.city);
     requireWritable(options.out / "kerbside_truth.png");
     PreparedScene stage(options);
     ResultFile results("kerbside", std::string(programVersion), stage.context.renderer());

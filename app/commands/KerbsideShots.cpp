@@ -106,6 +106,8 @@ std::vector<KerbsideShot> kerbsideShots(const Scene& scene, const ChromeParts& p
         const vehicles::VehiclePose& own = shot.frame.vehicles[job->vehicle];
         const ChromePart& part = parts.of(own.model)[job->part];
         const glm::dvec3 middle(job->worldFromPart[3]);
+        shot.pixels = job->pixels;
+        shot.away = glm::length(middle - glm::dvec3(stop.eye));
         // What must be seen of it.
         std::vector<glm::dvec3> places;
         for (const city::Vertex& v : parts.meshOf(part).vertices)

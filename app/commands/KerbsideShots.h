@@ -17,6 +17,8 @@ struct KerbsideShot {
     FrameScene frame;           ///< with this one view
     std::uint32_t vehicle = 0;  ///< whose chrome it is: index into the frame's vehicles
     double seconds = 0;         ///< after the staged vehicles' start
+    double pixels = 0;          ///< the part's width on screen
+    double away = 0;            ///< metres from the eye to it
     double apart = 0;           ///< metres from the part's middle to the nearest that moves; 0: nothing does
 };
 

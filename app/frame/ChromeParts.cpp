@@ -253,7 +253,9 @@ ChromeParts::ChromeParts(std::span<const vehicles::VehicleModel> models) {
             for (city::Mesh& component : chromeComponents(mesh)) {
                 ChromePart part;
                 part.onWheel = onWheel;
-                part.centre = component.bounds().centre();
+                const city::Aabb bounds = component.bounds();
+                part.centre = bounds.centre();
+                part.half = 0.5f * (bounds.max - bounds.min);
                 for (city::Vertex& v : component.vertices) {
                     v.position -= part.centre;
                     part.radius = std::max(part.radius, glm::length(v.position));

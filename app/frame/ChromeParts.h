@@ -18,6 +18,7 @@ namespace app {
 struct ChromePart {
     std::uint32_t shape = 0;  ///< of ChromeParts: those that are the same but for their place share one
     glm::vec3 centre{0};      ///< of its bounding box: in the vehicle's frame, or the wheel's
+    glm::vec3 half{0};        ///< half the sides of that box
     float radius = 0;         ///< of the ball around `centre` that holds it
     /// Of a sphere of as much surface per radius: strips are narrow, however long, metres.
     float width = 0;

@@ -191,7 +191,13 @@ ChromePlan planChrome(const FrameScene& scene, std::span<const std::uint32_t> se
 
         const glm::mat4 clip = view.clipFromView * view.viewFromWorld;
         const glm::dvec3 towards = origin - view.eye;
+        glm::dmat4 relativeFromPart = job.worldFromPart;
+        relativeFromPart[3] = glm::dvec4(towards, 1);
+        city::Aabb box;
+        box.extend(-part.half);
+        box.extend(part.half);
         if (pixelsOfBall(clip, view.size, glm::vec3(towards), part.radius).empty() ||
+            pixelsOfBox(clip * glm::mat4(relativeFromPart), view.size, box).empty() ||
             (!stands(pose) &&
              behindItsVehicle(own, job.radius, (view.eye - pose.position) * turn, bodyOf(model)))) {
             ++plan.outOfSight;

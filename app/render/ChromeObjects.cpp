@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "app/frame/StandingReflectors.h"
 #include "app/frame/VehicleShading.h"
 
 namespace app {
@@ -27,6 +28,9 @@ constexpr int mostHalvings = 6;
 constexpr double leastImage = 0.7;
 /// Share over the local map's image below which errors may not grow any more: they are seen by it.
 constexpr double faintest = 0.2;
+/// A part shows its own body along its edges, at a glance, where images are crowded: its levels may be off by
+/// so many times as much as others', and its edges by so many times.
+constexpr double ownCoarse = 8, ownBent = 2;
 /// Of a job's reach: things that begin beyond it are covered by the map to less than one part in fifty.
 constexpr double reachShown = 0.93;
 
@@ -191,6 +195,22 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
                      vehicles_.of(pose, static_cast<float>(image.metresPerRadian * radiansOff)))
                     add(1 + std::uint64_t{pose.id}, number++, *placed.mesh, placed.worldFromMesh,
                         job.close[k]);
+            }
+            // A wheel's parts look away from their vehicle.
+            if (job.wheel != ChromeJob::noWheel || stands(own)) continue;
+            const double perRadian = std::max(distance - job.radius, job.radius);
+            if (const CloseMesh* body =
+                    vehicles_.besides(own.model, part, job.part, reflector,
+                                      static_cast<float>(ownCoarse * perRadian * radiansOff))) {
+                const glm::dmat3 turn(worldFromVehicle(own));
+                virtualOptions.tolerance *= ownBent;
+                virtualOptions.vertices.cellTolerance *= ownBent;
+                add(object(kept, p, 1 + std::uint64_t{own.id}, 0, *body, options.share),
+                    glm::dmat4(glm::dvec4(turn[0], 0), glm::dvec4(turn[1], 0), glm::dvec4(turn[2], 0),
+                               glm::dvec4(own.position, 1)),
+                    job.vehicle);
+                virtualOptions.tolerance /= ownBent;
+                virtualOptions.vertices.cellTolerance /= ownBent;
             }
         }
     }

@@ -37,6 +37,26 @@ std::unique_ptr<CloseMesh> meshFrom(const city::Mesh& mesh, const std::vector<st
     return made;
 }
 
+/// Metres from a part up to which it mirrors its own body: what is farther stands behind it, or is small.
+constexpr float ownReach = 0.6f;
+/// Metres before a part's surface up to which chrome is the part itself: its levels of detail are off by as
+/// much.
+constexpr double skin = 0.004;
+
+/// How far before the surface of the part a place of its frame is, metres, as seen from the middles of its
+/// pieces; below 0 within it.
+double before(const reflection::Reflector& reflector, const glm::dvec3& place) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const reflection::ReflectorPiece& piece : reflector.pieces) {
+        const reflection::ReflectorMap& map = piece.built.map;
+        if (map.empty()) continue;
+        const glm::dvec3 p = map.frame().toMap(place);
+        const reflection::ReflectorMap::Sample at = map.sample(p);
+        least = std::min(least, map.frame().scale * glm::dot(p - at.position, at.normal));
+    }
+    return least;
+}
+
 }  // namespace
 
 std::vector<CloseMesh> closeMeshes(const CloseCityPatch& patch) {
@@ -86,6 +106,36 @@ std::span<const CloseVehicles::Placed> CloseVehicles::of(const vehicles::Vehicle
         placed_.push_back({&wheelMesh, placed(turn * vehicleFromWheel(wheel, pose),
                                               pose.position + glm::dvec3(turn * wheel.centre))});
     return placed_;
+}
+
+const CloseMesh* CloseVehicles::besides(std::size_t model, const ChromePart& part, std::uint32_t number,
+                                        const reflection::Reflector& reflector, float allowed) {
+    if (model >= models_.size()) return nullptr;
+    const VehicleLevels& levels = levelsOf(model);
+    if (levels.bodies.empty()) return nullptr;
+    const VehicleLevels::Level& level = levels.bodies[VehicleLevels::choose(levels.bodies, allowed)];
+    std::unique_ptr<CloseMesh>& made = besides_[{&level, number}];
+    if (!made) {
+        constexpr auto chrome = static_cast<std::uint32_t>(vehicles::Surface::chrome);
+        const std::vector<city::Vertex>& vertices = level.vertices->vertices;
+        std::vector<std::uint32_t> kept;
+        for (std::size_t k = 0; k + 2 < level.indices.size(); k += 3) {
+            bool near = false, within = true, itself = true;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const city::Vertex& v = vertices[level.indices[k + c]];
+                const glm::vec3 off = glm::max(glm::abs(v.position - part.centre) - part.half, glm::vec3(0));
+                near = near || glm::dot(off, off) < ownReach * ownReach;
+                const double d = off == glm::vec3(0) ? before(reflector, glm::dvec3(v.position - part.centre))
+                                                     : std::max(static_cast<double>(glm::length(off)), 0.0);
+                within = within && d <= 0;
+                itself = itself && v.material == chrome && d < skin;
+            }
+            if (near && !within && !itself)
+                kept.insert(kept.end(), {level.indices[k], level.indices[k + 1], level.indices[k + 2]});
+        }
+        made = meshFrom(*level.vertices, kept);
+    }
+    return made->indices.empty() ? nullptr : made.get();
 }
 
 city::Aabb CloseVehicles::boxOf(const vehicles::VehiclePose& pose) {

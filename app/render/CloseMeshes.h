@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "app/frame/ChromeParts.h"
@@ -42,6 +43,11 @@ class CloseVehicles {
     /// Body and wheels at the coarsest levels that are off by no more than `allowed` metres. The span is good
     /// until the next call, the meshes as long as this.
     std::span<const Placed> of(const vehicles::VehiclePose& pose, float allowed);
+    /// A body as one of its own parts of chrome (not on a wheel) sees it: what is near the part, without the
+    /// part itself and what lies within it, at the coarsest level that is off by no more than `allowed`
+    /// metres. In the vehicle's frame; null where that is nothing. `number`: the part's, in its model.
+    const CloseMesh* besides(std::size_t model, const ChromePart& part, std::uint32_t number,
+                             const reflection::Reflector& reflector, float allowed);
     /// What a vehicle fills, wide enough for its wheels, in its own frame.
     city::Aabb boxOf(const vehicles::VehiclePose& pose);
 
@@ -52,6 +58,7 @@ class CloseVehicles {
     std::span<const vehicles::VehicleModel> models_;
     std::map<std::size_t, VehicleLevels> levels_;
     std::map<const VehicleLevels::Level*, std::unique_ptr<CloseMesh>> meshes_;
+    std::map<std::tuple<const VehicleLevels::Level*, std::uint32_t>, std::unique_ptr<CloseMesh>> besides_;
     std::vector<Placed> placed_;
 };
 
