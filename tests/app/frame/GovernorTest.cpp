@@ -470,5 +470,15 @@ TEST(DetailTest, closeChromeIsGivenUpFromItsSmallestPartsOn) {
     EXPECT_EQ(&valueOf(all, Knob::chromePixels), &all.chrome.leastPixels);
 }
 
+TEST(Detail, SaysWhatChromeGivesUpAndOfChromeInChromeAll) {
+    Detail full, now;
+    now.chrome = {48, ChromeDetail::none};
+    EXPECT_EQ(givenUp(full, now),
+              "close things in chrome from 48 pixels on, not 24, no close things in chrome seen in chrome");
+    EXPECT_EQ(givenUp(now, now), "");
+    EXPECT_NEAR(blend(full, now, 0.5).chrome.leastPixels, std::sqrt(24. * 48), 1e-9);
+    EXPECT_EQ(valueOf(now, Knob::bouncePixels), ChromeDetail::none);
+}
+
 }  // namespace
 }  // namespace app
