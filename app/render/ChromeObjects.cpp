@@ -205,7 +205,7 @@ void ChromeObjects::gather(const ChromePlan& plan, std::uint32_t view, const Pas
                 const glm::dmat3 turn(worldFromVehicle(own));
                 virtualOptions.tolerance *= ownBent;
                 virtualOptions.vertices.cellTolerance *= ownBent;
-                add(object(kept, p, 1 + std::uint64_t{own.id}, 0, *body, options.share),
+                add(1 + std::uint64_t{own.id}, 0, *body,
                     glm::dmat4(glm::dvec4(turn[0], 0), glm::dvec4(turn[1], 0), glm::dvec4(turn[2], 0),
                                glm::dvec4(own.position, 1)),
                     job.vehicle);
