@@ -48,6 +48,9 @@ void VirtualEdges::begin(const ReflectorMap& in, const glm::dvec3& from, const g
     places.reserve(mesh.places.size());
     for (const glm::vec3& p : mesh.places)
         places.push_back(glm::dvec3(reflectorFromMesh * glm::dvec4(glm::dvec3(p), 1)));
+    towards.clear();
+    towards.reserve(seen.size());
+    for (const VirtualVertex& v : seen) towards.push_back(glm::normalize(v.fromEye));
     sides.resize(seen.size());
     for (std::size_t k = 0; k < seen.size(); ++k) sides[k] = sideOf(seen[k].status);
     image.clear();
@@ -65,7 +68,7 @@ void VirtualEdges::begin(const ReflectorMap& in, const glm::dvec3& from, const g
     for (std::size_t k = 0; k + 2 < mesh.triangles.size(); k += 3) {
         const VirtualTriangle t{mesh.triangles[k], mesh.triangles[k + 1], mesh.triangles[k + 2]};
         const VirtualTriangle at{mesh.placeOf[t[0]], mesh.placeOf[t[1]], mesh.placeOf[t[2]]};
-        if (usable(at[0]) && usable(at[1]) && usable(at[2])) triangles.push_back({at, t});
+        if (usable(at[0]) && usable(at[1]) && usable(at[2]) && isSeen(at)) triangles.push_back({at, t});
     }
 
     cone = how.coneCosine > -1 ? std::acos(std::min(how.coneCosine, 1.0)) : -1;
@@ -118,6 +121,7 @@ void VirtualEdges::add(std::uint32_t a, std::uint32_t b, double share, const Vir
     halved[edgeKey(a, b)] = static_cast<std::uint32_t>(places.size());
     onEdges.push_back({a, b, static_cast<float>(share)});
     seen.push_back(vertex);
+    towards.push_back(glm::normalize(vertex.fromEye));
     places.push_back(places[a] + share * (places[b] - places[a]));
     sides.push_back(side);
 }
@@ -143,21 +147,27 @@ void VirtualEdges::askMiddles() {
     edges.clear();
     cuts.clear();
     cutRounds = 0;
-    for (const Triangle& triangle : triangles)
+    const auto squared = [](double x) { return static_cast<float>(x * x); };
+    const float unbentHere = squared(unbent), ofOutlineHere = squared(ofOutline),
+                shortHere = squared(shortEdge * options->tolerance);
+    for (Triangle& triangle : triangles)
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = triangle.places[k], b = triangle.places[(k + 1) % 3];
             const bool cut = sides[a] == Side::hidden || sides[b] == Side::hidden;
             if (a == b || (sides[a] != Side::seen && sides[b] != Side::seen && cut)) continue;
-            const double length = apartOf(seen[a].fromEye, seen[b].fromEye);
+            const float chord = chordOf(a, b);
             if (!cut) {
                 // Only where the image runs into the part's outline it bends by more.
                 const bool smooth = (seen[a].status == ReflectionStatus::found) ==
                                     (seen[b].status == ReflectionStatus::found);
-                const double least = sides[a] == Side::outline && sides[b] == Side::outline ? ofOutline
-                                     : smooth                                               ? unbent
-                                              : shortEdge * options->tolerance;
-                if (length <= least || (lost(a) && lost(b)) || outside(a, b, length)) continue;
+                const float least = sides[a] == Side::outline && sides[b] == Side::outline ? ofOutlineHere
+                                    : smooth                                               ? unbentHere
+                                                                                           : shortHere;
+                if (chord <= least || (lost(a) && lost(b))) continue;
             }
+            const double length = std::sqrt(static_cast<double>(chord));
+            if (!cut && outside(a, b, length)) continue;
+            triangle.looked = true;
             if (!halved.try_emplace(edgeKey(a, b), straight).second) continue;
             if (cut) {
                 Cut& made = cuts.emplace_back();
@@ -255,13 +265,12 @@ void VirtualEdges::cutTriangles() {
     for (const Triangle& t : triangles) {
         VirtualTriangle middle{straight, straight, straight}, between = middle;
         bool whole = true, tornApart = false;
-        for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3 && t.looked; ++k) {
             const auto entry = halved.find(edgeKey(t.places[k], t.places[(k + 1) % 3]));
             if (entry != halved.end()) middle[k] = entry->second;
             whole = whole && middle[k] == straight;
             tornApart = tornApart || middle[k] == broken;
         }
-        if (!isSeen(t.places)) continue;
         if (whole) {
             drawn.insert(drawn.end(), t.vertices.begin(), t.vertices.end());
             continue;
@@ -275,9 +284,10 @@ void VirtualEdges::cutTriangles() {
         cutTriangle(t.places, middle, cutPlaces);
         cutTriangle(t.vertices, between, cutVertices);
         for (std::size_t k = 0; k < cutPlaces.size(); ++k) {
+            if (!isSeen(cutPlaces[k])) continue;
             if (!last)
                 next.push_back({cutPlaces[k], cutVertices[k]});
-            else if (isSeen(cutPlaces[k]))
+            else
                 drawn.insert(drawn.end(), cutVertices[k].begin(), cutVertices[k].end());
         }
     }

@@ -63,6 +63,7 @@ class VirtualEdges {
     enum class Side : std::uint8_t { seen, outline, hidden };
     struct Triangle {
         VirtualTriangle places, vertices;
+        bool looked = false;  ///< one of its edges was looked at
     };
     /// An edge that the piece's outline cuts.
     struct Cut {
@@ -80,6 +81,11 @@ class VirtualEdges {
     }
     bool lost(std::uint32_t place) const {
         return creased && seen[place].status == ReflectionStatus::unreflected;
+    }
+    /// Chord between the directions to two places, which is their angle where that is small, squared.
+    float chordOf(std::uint32_t a, std::uint32_t b) const {
+        const glm::vec3 d = towards[a] - towards[b];
+        return d.x * d.x + d.y * d.y + d.z * d.z;
     }
     bool outside(std::uint32_t a, std::uint32_t b, double length) const;
     void ask(const glm::dvec3& place, double urgency);
@@ -100,6 +106,7 @@ class VirtualEdges {
 
     std::vector<glm::dvec3> places;
     std::vector<VirtualVertex> seen;
+    std::vector<glm::vec3> towards;  ///< places, unit length from the eye
     std::vector<Side> sides;
     std::vector<MiddleVertex> onEdges;        ///< of places, those after the mesh's
     std::vector<std::uint32_t> middlePlaces;  ///< of vertices, those after the mesh's
