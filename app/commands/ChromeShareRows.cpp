@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/commands/ChromeBench.h"
+#include "app/commands/HollowImages.h"
 #include "app/mirrors/TrueReflection.h"
 #include "app/report/ResultFile.h"
 #include "app/report/Table.h"
@@ -188,13 +189,33 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
     for (std::size_t p = 0; p < parts.size(); ++p) {
         if (options.stop()) return out;
         const StagedChrome& part = parts[p];
-        const std::vector<Seen> seen = seenIn(part, eye, place, options.vertex);
-        std::vector<Crowd> crowds;
-        for (const PaperShare& s : paperShares) crowds.emplace_back(part, s.share, options.vertex);
         std::vector<Share> here(shares);
-        // Concave pieces take a thousand times as long; one round of them is enough.
-        const bool slow = part.concave();
-        for (int round = slow ? 0 : -1; round < (slow ? 1 : options.repeats); ++round)
+        std::vector<Seen> seen;
+        std::vector<Crowd> crowds;
+        // In hollow pieces every image is drawn, and measured as such; one round of them is enough.
+        const bool hollow = part.concave() && !options.vertex.published;
+        if (hollow) {
+            const HollowTruth truth = hollowTruth(part, eye, place);
+            HollowImages full;
+            for (std::size_t s = 0; s < shares; ++s) {
+                const Stopwatch watch;
+                HollowImages some = hollowImages(part.reflector.pieces.front().built.map, eye, part.close,
+                                                 paperShares[s].share, options.vertex.search);
+                Share& of = here[s];
+                of.ms.push_back(watch.elapsed());
+                of.counts.searched = some.searched;
+                for (const CloseMesh& m : part.close) of.counts.vertices += m.positions.size();
+                if (s == 0) full = some;
+                HollowErrors errors = hollowErrors(full, some, truth, place);
+                of.fromFull = std::move(errors.fromFull);
+                of.fromTruth = std::move(errors.fromTruth);
+                of.lost = errors.lost, of.untrue = errors.untrue;
+            }
+        } else {
+            seen = seenIn(part, eye, place, options.vertex);
+            for (const PaperShare& s : paperShares) crowds.emplace_back(part, s.share, options.vertex);
+        }
+        for (int round = -1; round < options.repeats && !hollow; ++round)
             for (std::size_t s = 0; s < shares; ++s) {
                 const Stopwatch watch;
                 crowds[s].update(part, eye);
@@ -202,10 +223,10 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
             }
         for (std::size_t s = 0; s < shares; ++s) {
             Share& of = here[s];
-            of.counts = crowds[s].counts;
+            if (!hollow) of.counts = crowds[s].counts;
             std::size_t at = 0;
-            for (const auto& object : crowds[s].objects)
-                for (const reflection::VirtualVertex& v : object->vertices()) {
+            for (std::size_t o = 0; !hollow && o < crowds[s].objects.size(); ++o)
+                for (const reflection::VirtualVertex& v : crowds[s].objects[o]->vertices()) {
                     const Seen& is = seen[at++];
                     if (!is.found) continue;
                     of.untrue += !is.isTrue;
@@ -218,7 +239,7 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
                     of.fromFull.push_back(glm::distance(pixel, is.searched));
                     if (is.isTrue) of.fromTruth.push_back(glm::distance(pixel, is.truth));
                 }
-            add(part.name, s, of, here[0]);
+            add(hollow ? part.name + ", every image" : part.name, s, of, here[0]);
             if (p >= stage.parts.size()) continue;
             Share& all = whole[s];
             all.counts.vertices += of.counts.vertices;

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands/ChromeBench.h"
+#include "app/commands/HollowImages.h"
 #include "app/mirrors/TrueReflection.h"
 #include "app/report/Table.h"
 
@@ -15,8 +16,9 @@ namespace {
 
 /// A vertex is not said to jump by less than this: the eighth of a pixel to which rasterisers snap.
 constexpr double floorPixels = 0.125;
-/// Vertices that are followed: so many of the things nearest to a reflector, on convex and on concave pieces.
-constexpr std::size_t mostFollowed = 3000, mostOnConcave = 24;
+/// Vertices that are followed: so many of the things nearest to a reflector, on convex pieces and, with every
+/// image, in hollow ones.
+constexpr std::size_t mostFollowed = 3000, mostInHollow = 600;
 /// Steps are compared with the truth every so many.
 constexpr int truthEvery = 250;
 
@@ -31,6 +33,7 @@ struct Jumps {
     double at = 0;     ///< pixels that the vertex moved by there
     double own = 0;    ///< worst change of a vertex's move from one step to the next, pixels
     std::size_t moves = 0, jumps = 0;  ///< moves; those of more than twice every neighbour's
+    std::size_t comes = 0, goes = 0;   ///< of images in hollow pieces
     std::vector<double> fromTruth;     ///< pixels between a step's move and the truth's
 };
 
@@ -57,7 +60,8 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
     out.title = stage.world.name + ": " + std::to_string(options.steps) +
                 " small steps of the eye; a vertex's move against its neighbours'";
     out.table.push_back({"reflector", "searched", "moves", "worst ratio", "px there", "over 2x", "asked",
-                         "worst change of a move, px", "px a step from truth: mean/99 %/worst"});
+                         "images that come and go", "worst change of a move, px",
+                         "px a step from truth: mean/99 %/worst"});
     const glm::dvec3 target = stage.world.target, start = stage.world.eye;
     // Half a millimetre a step on a circle about what is looked at: 0.5 m in all for 1,000.
     const double angle = 0.0005 / std::max(glm::distance(start, target), 1e-3);
@@ -81,13 +85,50 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
     }
     for (const StagedChrome& part : stage.parts) {
         const TrueReflection truth(*part.mirror);
+        const auto nearest = [&](const glm::dvec3& from, const glm::dvec3& p, const glm::dvec2& seen,
+                                 glm::dvec2& best) {
+            double least = 1e300;
+            for (const TruePoint& t : truth.all(from, p)) {
+                const glm::dvec2 pixel = place.of(t.position - from);
+                if (glm::distance(pixel, seen) < least) least = glm::distance(pixel, seen), best = pixel;
+            }
+            return least < 1e300;
+        };
         std::vector<std::vector<std::vector<std::uint32_t>>> neighbours;
         for (const CloseMesh& m : part.close) neighbours.push_back(neighboursOf(m));
         for (const Followed& followed : how) {
             if (options.stop()) return out;
             Jumps result;
             for (const reflection::ReflectorPiece& piece : part.reflector.pieces) {
-                std::size_t left = piece.bend == reflection::Bend::convex ? mostFollowed : mostOnConcave;
+                if (piece.bend == reflection::Bend::concave && !followed.options.published) {
+                    std::size_t left = mostInHollow;
+                    std::vector<CloseMesh> meshes;
+                    for (const CloseMesh& m : part.close)
+                        if (m.positions.size() <= left) left -= m.positions.size(), meshes.push_back(m);
+                    HollowFollower follower(meshes, place);
+                    for (int step = 0; step <= options.steps; ++step) {
+                        if (options.stop()) return out;
+                        const glm::dvec3 eye = eyeAt(step), was = eyeAt(step - 1);
+                        const auto compare = [&](std::size_t m, std::size_t k, const glm::dvec2& from,
+                                                 const glm::dvec2& to) {
+                            const glm::dvec3 p(meshes[m].positions[k]);
+                            glm::dvec2 now(0), then(0);
+                            if (nearest(eye, p, to, now) && nearest(was, p, from, then))
+                                result.fromTruth.push_back(glm::distance(to - from, now - then));
+                        };
+                        follower.step(
+                            hollowImages(piece.built.map, eye, meshes, followed.options.share,
+                                         followed.options.search),
+                            floorPixels,
+                            step % truthEvery == 1 ? HollowFollower::Told(compare) : HollowFollower::Told());
+                    }
+                    if (follower.ratio > result.ratio) result.ratio = follower.ratio, result.at = follower.at;
+                    result.own = std::max(result.own, follower.own);
+                    result.moves += follower.moves, result.jumps += follower.jumps;
+                    result.comes += follower.comes, result.goes += follower.goes;
+                    continue;
+                }
+                std::size_t left = mostFollowed;
                 for (std::size_t m = 0; m < part.close.size(); ++m) {
                     const CloseMesh& mesh = part.close[m];
                     if (mesh.positions.size() > left) continue;
@@ -112,18 +153,8 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
                             if (moved[k]) move[k] = at - last[k];
                             if (moved[k] && step % truthEvery == 1) {
                                 const glm::dvec3 p(mesh.positions[k]);
-                                const auto nearest = [&](const glm::dvec3& from, const glm::dvec2& seen,
-                                                         glm::dvec2& best) {
-                                    double least = 1e300;
-                                    for (const TruePoint& t : truth.all(from, p)) {
-                                        const glm::dvec2 pixel = place.of(t.position - from);
-                                        if (glm::distance(pixel, seen) < least)
-                                            least = glm::distance(pixel, seen), best = pixel;
-                                    }
-                                    return least < 1e300;
-                                };
                                 glm::dvec2 now(0), then(0);
-                                if (nearest(eye, at, now) && nearest(eyeAt(step - 1), last[k], then))
+                                if (nearest(eye, p, at, now) && nearest(eyeAt(step - 1), p, last[k], then))
                                     result.fromTruth.push_back(glm::distance(move[k], now - then));
                             }
                             wasFound[k] = found;
@@ -154,7 +185,8 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
             const Spread fromTruth = spreadOf(result.fromTruth);
             out.table.push_back({part.name, followed.name, std::to_string(result.moves),
                                  fixed(result.ratio, 2), fixed(result.at, 2), std::to_string(result.jumps),
-                                 "0", fixed(result.own, 2),
+                                 "0", std::to_string(result.comes) + " / " + std::to_string(result.goes),
+                                 fixed(result.own, 2),
                                  fixed(fromTruth.mean, 4) + " / " + fixed(fromTruth.p99, 3) + " / " +
                                      fixed(fromTruth.worst, 3)});
             out.rows.push_back({{"part", "still"},
@@ -167,6 +199,8 @@ MirrorRows chromeStills(const ChromeStage& stage, const ChromeBenchOptions& opti
                                 {"worst_ratio_to_neighbours", result.ratio},
                                 {"px_there", result.at},
                                 {"over_twice_neighbours", result.jumps},
+                                {"images_come", result.comes},
+                                {"images_go", result.goes},
                                 {"worst_change_of_a_move_px", result.own},
                                 {"px_a_step_from_truth", toJson(fromTruth)},
                                 {"asked", {{"over_twice_neighbours", 0}}}});
