@@ -12,11 +12,11 @@ layout(local_size_x = 32) in;
 /// Concave pieces: every vertex; else those left.
 uniform bool everyVertex;
 
-/// A face's lattice has at most 16 cells a side, or 31 where the map itself has that many.
-const uint mostNodes = 32u * 32u;
+/// A face's lattice has at most 32 cells a side.
+const uint mostNodes = 33u * 33u;
 /// ThoroughSearch.cpp's lattice: a bowl has some ten; what is beyond this is left out.
 const uint mostStarts = 128u;
-const uint latticeSide = 16u;
+const uint latticeSide = 16u, concaveSide = 32u;
 const real enough = 1e-14lf, still = 1e-16lf;
 const int mostLookups = 160;
 
@@ -114,7 +114,9 @@ void writeUnfound(uint index, real3 eye, real3 vertex) {
 void main() {
     uint me = gl_LocalInvocationID.x;
     uint todo = everyVertex ? vertexCount : left[1].count;
-    uint step = max(1u, cells / latticeSide), side = cells / step + 1u;
+    // As fine as the patches that the processor descends from (SurfacePatches.cpp).
+    uint step = concave != 0u ? (cells + concaveSide - 1u) / concaveSide : max(1u, cells / latticeSide);
+    uint side = cells / step + 1u;
     for (uint i = gl_WorkGroupID.x; i < todo; i += gl_NumWorkGroups.x) {
         uint index = everyVertex ? i : leftVertex[vertexCount + i];
         vec3 given;

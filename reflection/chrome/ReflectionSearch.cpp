@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+#include "reflection/chrome/ConcaveSearch.h"
 #include "reflection/chrome/QuickSearch-inl.h"
 #include "reflection/chrome/SearchLanes-inl.h"
 #include "reflection/chrome/SearchStart-inl.h"
@@ -211,6 +212,8 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
         }
         if (convex && !inside) HWY_DYNAMIC_DISPATCH(searchPackets)
         (map, mapEye, std::span(moved).first(left), std::span(answers).first(left), options);
+        ConcavePoints all;
+        if (!convex) all = searchConcave(map, mapEye, std::span(moved).first(left), false, options);
         for (std::size_t k = 0; k < left; ++k) {
             ReflectionPoint& r = out[rest[k]];
             if (!finite(in[rest[k]])) {
@@ -230,7 +233,9 @@ void findReflectionPoints(const ReflectorMap& map, const glm::dvec3& eye,
                 if (r.status == ReflectionStatus::outOfSteps)
                     r.status =
                         r.residual < nearEnough ? ReflectionStatus::found : ReflectionStatus::unreflected;
-            } else if (!convex || r.status == ReflectionStatus::outOfSteps) {
+            } else if (!convex) {
+                r = settle(map, mapEye, moved[k], all.of(k));
+            } else if (r.status == ReflectionStatus::outOfSteps) {
                 r = searchThoroughly(map, mapEye, moved[k], options);
             }
             r.point = map.frame().fromMap(r.point);

@@ -15,7 +15,7 @@ class ReflectorMap;
 ///
 /// Normals of a cell are blended from its corners', so they lie in the corners' cone. Points between corners
 /// may leave the ball of the corners by a hundredth of its radius where the surface bends by a right angle
-/// over a face; balls are a tenth larger.
+/// over a face; balls are a tenth larger. Of convex pieces, where nobody asks for them, there are none.
 class SurfacePatches {
   public:
     SurfacePatches() = default;
@@ -30,10 +30,11 @@ class SurfacePatches {
 
     /// Patches in which the bisector of the directions to eye and vertex can be the normal, in their order.
     /// The bisector's direction leaves that at the ball's centre by the angles under which eye and vertex see
-    /// the ball, over the bisector's length. Cost: two microseconds, sixteen patches at a time.
+    /// the ball, over the bisector's length. Groups of patches first. Cost: half a microsecond.
     void mayReflect(const glm::dvec3& eye, const glm::dvec3& vertex, std::vector<std::uint32_t>& to) const;
 
-    /// Numbers of all patches side by side, padded by patches that reflect nothing.
+    /// Numbers of all patches side by side, padded by patches that reflect nothing, then those of groups of
+    /// sixteen, then of groups of those.
     enum Row : std::uint8_t { centreX, centreY, centreZ, radius, axisX, axisY, axisZ, cosine, sine, rows };
     static constexpr std::size_t padding = 16;
     const float* row(Row r) const { return numbers[r].data(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "reflection/chrome/ConcaveSearch.h"
 #include "reflection/chrome/LatticeStarts.h"
 
 namespace reflection {
@@ -14,27 +15,17 @@ namespace {
 /// residual is 1e-7 and the surface turns by at least 1 % of its radius per radius, they can differ by 1e-5.
 constexpr double samePoint = 2e-5;
 
-/// Lookups after which a start is given up: from within a patch that holds a point Newton steps need six.
-constexpr int mostLookups = 40;
-
 }  // namespace
 
 std::vector<ReflectionPoint> everyReflectionPoint(const ReflectorMap& map, const glm::dvec3& eye,
                                                   const glm::dvec3& vertex, const SearchOptions& options) {
-    const bool convex = map.bend() == Bend::convex;
-    std::vector<glm::dvec3> starts;
-    if (convex) {
-        // The graphics card's starts: on which side of a rim a point within the tolerance of it ends is
-        // theirs.
-        starts = latticeStarts(map, eye, vertex);
-    } else {
-        std::vector<std::uint32_t> patches;
-        map.patches().mayReflect(eye, vertex, patches);
-        for (const std::uint32_t p : patches) starts.emplace_back(map.patches().start(p));
-    }
+    if (map.bend() == Bend::concave)
+        return searchConcave(map, eye, std::span(&vertex, 1), true, options).points;
+    // The graphics card's starts: on which side of a rim a point within the tolerance of it ends is theirs.
+    const std::vector<glm::dvec3> starts = latticeStarts(map, eye, vertex);
     std::vector<Candidate> ends(starts.size());
     SearchOptions patient = options;
-    patient.lookups = convex ? 4 * options.lookups : std::max(options.lookups, mostLookups);
+    patient.lookups = 4 * options.lookups;
     descendFromStarts(map, eye, vertex, starts, ends, patient);
     std::vector<ReflectionPoint> found;
     for (const Candidate& c : ends) {
@@ -55,7 +46,11 @@ std::vector<ReflectionPoint> everyReflectionPoint(const ReflectorMap& map, const
 
 ReflectionPoint searchThoroughly(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,
                                  const SearchOptions& options) {
-    const std::vector<ReflectionPoint> all = everyReflectionPoint(map, eye, vertex, options);
+    return settle(map, eye, vertex, everyReflectionPoint(map, eye, vertex, options));
+}
+
+ReflectionPoint settle(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,
+                       std::span<const ReflectionPoint> all) {
     for (const ReflectionPoint& r : all)
         if (r.status == ReflectionStatus::found) return r;
 

@@ -31,6 +31,11 @@ bool entersSurface(const ReflectorMap& map, const glm::dvec3& from, const glm::d
 std::vector<ReflectionPoint> everyReflectionPoint(const ReflectorMap& map, const glm::dvec3& eye,
                                                   const glm::dvec3& vertex, const SearchOptions& options);
 
+/// What is said of a vertex whose reflection points are all known: the first of those on the part, else
+/// hidden, else unreflected. In the map's frame.
+ReflectionPoint settle(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,
+                       std::span<const ReflectionPoint> all);
+
 /// An answer for one vertex at any price: the shortest of everyReflectionPoint on the part, else hidden, else
 /// unreflected. In the map's frame.
 ReflectionPoint searchThoroughly(const ReflectorMap& map, const glm::dvec3& eye, const glm::dvec3& vertex,

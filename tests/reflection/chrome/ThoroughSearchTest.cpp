@@ -112,6 +112,29 @@ TEST(ThoroughSearch, MissesNothingThatDescentsFromEverywhereFind) {
     EXPECT_EQ(missed, 0U);
 }
 
+TEST(ThoroughSearch, TheShortestPathInABowlIsThatOfAllPoints) {
+    // Together and briskly, against each alone with every descent to its end.
+    const BuiltReflectorMap built = buildReflectorMap(
+        meshOf(ellipsoid({1, .8, .6}), 60, rim, glm::pi<double>(), true), {0, 0, 0}, Bend::concave);
+    Scatter random(6);
+    std::size_t found = 0;
+    for (int view = 0; view < 6; ++view) {
+        const glm::dvec3 eye = random.direction() * random.between(0.1, 4);
+        std::vector<glm::dvec3> vertices(300);
+        for (glm::dvec3& v : vertices) v = random.direction() * random.between(0.1, 4);
+        std::vector<ReflectionPoint> points(vertices.size());
+        findReflectionPoints(built.map, eye, vertices, points);
+        for (std::size_t k = 0; k < vertices.size(); ++k) {
+            const std::vector<ReflectionPoint> all = findAllReflectionPoints(built.map, eye, vertices[k]);
+            ASSERT_EQ(points[k].status == ReflectionStatus::found, !all.empty()) << view << ' ' << k;
+            if (all.empty()) continue;
+            ++found;
+            EXPECT_NEAR(points[k].path, all.front().path, 1e-6);
+        }
+    }
+    EXPECT_GT(found, 200U);
+}
+
 TEST(ThoroughSearch, GivesOneStatusToEveryVertexAroundABowl) {
     const BuiltReflectorMap built = buildReflectorMap(
         meshOf(ellipsoid({1, 1, 1}), 100, rim, glm::pi<double>(), true), {0, 0, 0}, Bend::concave);
