@@ -92,7 +92,7 @@ void addGroups(CLI::App& parser, Options& o, Spellings& spellings, const Command
             ->check(between(100, 20000, "metres"));
     }
     if (groups & trafficOptions) addTraffic(parser, o, groups);
-    if (groups & bodyOption) addBody(parser, o, groups);
+    if ((groups & bodyOption) && !(groups & trafficOptions)) addBody(parser, o, groups);
     if (groups & methodOption)
         addNamed(parser, "--method", o.method, reflectionMethodNames,
                  "how vehicles get their reflections (default mem)");

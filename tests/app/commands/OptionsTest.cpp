@@ -22,6 +22,7 @@ Command bench() {
             .groups = cityOptions | jsonOptions,
             .benches = {{"cars", "frames", trafficOptions | severalCars | resolutionOption},
                         {"stills", "pictures", trafficOptions | outOptions},
+                        {"bodies", "options that traffic has, too, for what does not drive", bodyOption},
                         {"tracer", "rays", cellOption}},
             .run = [](const Options&) { return exitOk; }};
 }
