@@ -242,7 +242,10 @@ std::span<const ChromeShown> ChromeObjects::search(const ChromeDrawing& options,
             o.lastShare = options.share;
         }
         reflection::VirtualMesh::update(*task.map, task.eye, moved);
-        for (std::size_t k = 0; k < moved.size(); ++k) of[k]->counts = moved[k].counts;
+        for (std::size_t k = 0; k < moved.size(); ++k) {
+            of[k]->counts = moved[k].counts;
+            of[k]->away = moved[k].mesh->away();
+        }
     });
     counts.searchMilliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - searching).count();

@@ -30,6 +30,8 @@ struct ChromeObject {
     std::uint64_t used = 0;
     bool changed = true;  ///< its image moved since the frame before
     bool stale = true;    ///< what is drawn is not its image yet
+    float away =
+        0;  ///< metres of the light's path to what is drawn, in the mean: near things are drawn first
     reflection::VirtualCounts counts;
 
     /// What its image was found for.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,39 @@ bool contains(const std::vector<reflection::LocalMapSlot>& slots, const reflecti
     return std::ranges::any_of(slots, [&](const reflection::LocalMapSlot& s) {
         return s.sizeClass == slot.sizeClass && s.layer == slot.layer;
     });
+}
+
+/// A box wider or higher than one part in so many of the picture is looked at triangle by triangle.
+constexpr int wideBox = 4;
+
+/// Pixels that a mesh covers at most.
+reflection::PixelRect pixelsOfMesh(const glm::mat4& clipFromMesh, const glm::ivec2& size,
+                                   const city::Mesh& mesh) {
+    // As far before the eye as the projection's nearest: what crosses it is taken from there on.
+    constexpr float nearest = 1e-3f;
+    std::vector<glm::vec4> clip;
+    clip.reserve(mesh.vertices.size());
+    for (const city::Vertex& v : mesh.vertices) clip.push_back(clipFromMesh * glm::vec4(v.position, 1));
+    glm::vec2 low(1e9f), high(-1e9f);
+    const auto take = [&](const glm::vec4& p) {
+        const glm::vec2 at = (glm::vec2(p) / p.w * 0.5f + 0.5f) * glm::vec2(size);
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    };
+    for (std::size_t k = 0; k < mesh.indices.size(); ++k) {
+        const glm::vec4 &a = clip[mesh.indices[k]], &b = clip[mesh.indices[k % 3 == 2 ? k - 2 : k + 1]];
+        if (a.w >= nearest) take(a);
+        if ((a.w >= nearest) != (b.w >= nearest)) {
+            glm::vec4 cut = a + (nearest - a.w) / (b.w - a.w) * (b - a);
+            cut.w = nearest;
+            take(cut);
+        }
+    }
+    if (!(low.x <= high.x)) return {};
+    const auto inside = [&](const glm::vec2& p) {
+        return glm::ivec2(glm::clamp(p, glm::vec2(0), glm::vec2(size)));
+    };
+    return {inside(glm::floor(low)), inside(glm::ceil(high))};
 }
 
 }  // namespace
@@ -128,7 +162,11 @@ CityChrome::Impl::Layer CityChrome::Impl::layerOf(const ChromeShown& shown, std:
     // A picture is taken up by place: there only what is close has its place.
     l.far = alone ? drawingOf(shown.job->vehicle) : Drawing::plain;
     if (l.far != Drawing::plain) l.slot = around.slots[shown.job->vehicle];
-    l.pixels = pixelsOfBox(clipFromPart(*shown.job, pass), drawnSize, pieceMesh(*shown.piece).box);
+    const glm::mat4 clip = clipFromPart(*shown.job, pass);
+    l.pixels = pixelsOfBox(clip, drawnSize, pieceMesh(*shown.piece).box);
+    // A box near the eye says little; all that is drawn is bounded by these pixels.
+    if (l.pixels.size().x > drawnSize.x / wideBox || l.pixels.size().y > drawnSize.y / wideBox)
+        l.pixels = pixelsOfMesh(clip, drawnSize, shown.piece->mesh);
     l.things.reserve(shown.objects.size());
     for (const ChromeObject* o : shown.objects) {
         Layer::Thing& thing = l.things.emplace_back();
@@ -251,7 +289,11 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
         my.layer->endMask();
         glDisable(GL_CULL_FACE);
-        for (std::size_t k = 0; k < l.things.size(); ++k) {
+        // What hides others first: their pixels behind it are not shaded.
+        std::vector<std::size_t> order(l.things.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return shown[i].objects[k]->away; });
+        for (const std::size_t k : order) {
             ChromeObject& o = *shown[i].objects[k];
             if (!o.drawn) o.drawn = std::make_unique<gl::ChromeMesh>(o.source->attributes);
             if (o.stale) o.drawn->upload(*o.mesh, o.source->values);

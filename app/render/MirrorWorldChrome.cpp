@@ -74,7 +74,7 @@ void MirrorWorldChrome::Impl::makeGlObjects() {
             p.array.buffer(0, p.vertices.name(), sizeof(city::Vertex))
                 .attribute(0, 0, 3, GL_FLOAT, false, offsetof(city::Vertex, position))
                 .indices(p.indices.name());
-            for (Object& o : p.objects) o.drawn.emplace(std::vector<int>{3});
+            p.drawn.emplace(std::vector<int>{3});
             for (Body& b : p.bodies) b.drawn.emplace(std::vector<int>{3, 3, 3, 3});
             // On concave pieces images tear, which the processor's meshes find and leave out.
             if (!searchOnGpu || p.piece->bend == reflection::Bend::concave || p.piece->built.map.empty())
@@ -129,7 +129,7 @@ MirrorWorldChrome::MirrorWorldChrome(const MirrorWorld& world, const reflection:
             for (std::size_t o = 0; o < world.objects.size(); ++o) {
                 if (!chrome.close[o]) continue;
                 made.objects.push_back(
-                    {o, reflection::VirtualMesh(objects[o].positions, objects[o].indices, options), {}});
+                    {o, reflection::VirtualMesh(objects[o].positions, objects[o].indices, options)});
             }
         }
         if (!any) chrome.close.assign(world.objects.size(), false);
@@ -221,11 +221,13 @@ void MirrorWorldChrome::Impl::drawPiece(const Image& image, std::size_t curved, 
     const gl::Program& program = p.onGpu ? searched : virtualObjects;
     program.set("clipFromVirtual", clip);
     program.use();
-    if (p.onGpu) p.onGpu->draw();
-    for (Object& o : p.objects) {
-        if (p.onGpu) break;
-        o.drawn->upload(o.mesh, objects[o.index].values);
-        o.drawn->draw();
+    if (p.onGpu) {
+        p.onGpu->draw();
+    } else {
+        std::vector<gl::ChromeMesh::Part> parts;
+        for (const Object& o : p.objects) parts.push_back({&o.mesh, objects[o.index].values});
+        p.drawn->upload(parts);
+        p.drawn->draw();
     }
     if (!tree.nodes.empty()) drawBodies(image, curved, piece, how, clip, environments, frame);
 }

@@ -35,7 +35,6 @@ struct MirrorWorldChrome::Impl {
     struct Object {
         std::size_t index;
         reflection::VirtualMesh mesh;
-        std::optional<gl::ChromeMesh> drawn;
     };
     /// A piece of another reflector, close to this one.
     struct Body {
@@ -46,6 +45,7 @@ struct MirrorWorldChrome::Impl {
     struct Piece {
         const reflection::ReflectorPiece* piece = nullptr;
         std::vector<Object> objects;
+        std::optional<gl::ChromeMesh> drawn;  ///< all objects
         std::vector<Body> bodies;
         gl::Buffer vertices, indices;
         gl::VertexArray array;

@@ -118,7 +118,7 @@ glm::vec3 VirtualEdges::pastOutline(const VirtualVertex& at, const glm::dvec3& n
 
 void VirtualEdges::add(std::uint32_t a, std::uint32_t b, double share, const VirtualVertex& vertex,
                        Side side) {
-    halved[edgeKey(a, b)] = static_cast<std::uint32_t>(places.size());
+    halved.set(edgeKey(a, b), static_cast<std::uint32_t>(places.size()));
     onEdges.push_back({a, b, static_cast<float>(share)});
     seen.push_back(vertex);
     towards.push_back(glm::normalize(vertex.fromEye));
@@ -127,8 +127,8 @@ void VirtualEdges::add(std::uint32_t a, std::uint32_t b, double share, const Vir
 }
 
 std::uint32_t VirtualEdges::vertexOn(std::uint32_t a, std::uint32_t b, std::uint32_t place) {
-    const auto [at, isNew] = vertices.try_emplace(edgeKey(a, b), static_cast<std::uint32_t>(image.size()));
-    if (!isNew) return at->second;
+    const auto [at, isNew] = vertices.add(edgeKey(a, b), static_cast<std::uint32_t>(image.size()));
+    if (!isNew) return at;
     const MiddleVertex& edge = onEdges[place - mesh.places.size()];
     const auto placeOf = [&](std::uint32_t vertex) {
         return vertex < mesh.placeOf.size() ? mesh.placeOf[vertex]
@@ -138,7 +138,7 @@ std::uint32_t VirtualEdges::vertexOn(std::uint32_t a, std::uint32_t b, std::uint
     added.push_back({turned ? b : a, turned ? a : b, edge.share});
     middlePlaces.push_back(place);
     image.push_back(seen[place]);
-    return at->second;
+    return at;
 }
 
 void VirtualEdges::askMiddles() {
@@ -168,7 +168,7 @@ void VirtualEdges::askMiddles() {
             const double length = std::sqrt(static_cast<double>(chord));
             if (!cut && outside(a, b, length)) continue;
             triangle.looked = true;
-            if (!halved.try_emplace(edgeKey(a, b), straight).second) continue;
+            if (!halved.add(edgeKey(a, b), straight).second) continue;
             if (cut) {
                 Cut& made = cuts.emplace_back();
                 made.seen = sides[a] == Side::hidden ? b : a;
@@ -197,9 +197,9 @@ void VirtualEdges::takeMiddles() {
         if (!(off > options->tolerance) && side == Side::seen) continue;
         const bool intoCrease = lost(a) || lost(b);
         if (last || (intoCrease && depth >= creaseHalvings)) {
-            if (intoCrease) halved[edgeKey(a, b)] = broken;
+            if (intoCrease) halved.set(edgeKey(a, b), broken);
             if (tears && off > tornShare * apartOf(seen[a].fromEye, seen[b].fromEye))
-                halved[edgeKey(a, b)] = broken;
+                halved.set(edgeKey(a, b), broken);
             continue;
         }
         // Between two places on the outline all is hidden, but for their tolerance.
@@ -266,8 +266,8 @@ void VirtualEdges::cutTriangles() {
         VirtualTriangle middle{straight, straight, straight}, between = middle;
         bool whole = true, tornApart = false;
         for (std::size_t k = 0; k < 3 && t.looked; ++k) {
-            const auto entry = halved.find(edgeKey(t.places[k], t.places[(k + 1) % 3]));
-            if (entry != halved.end()) middle[k] = entry->second;
+            const std::uint32_t* entry = halved.find(edgeKey(t.places[k], t.places[(k + 1) % 3]));
+            if (entry != nullptr) middle[k] = *entry;
             whole = whole && middle[k] == straight;
             tornApart = tornApart || middle[k] == broken;
         }

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "reflection/chrome/EdgeTable.h"
 #include "reflection/chrome/VirtualMeshOptions.h"
 #include "reflection/chrome/VirtualObject.h"
 #include "reflection/chrome/VirtualTriangles.h"
@@ -111,7 +111,7 @@ class VirtualEdges {
     std::vector<MiddleVertex> onEdges;        ///< of places, those after the mesh's
     std::vector<std::uint32_t> middlePlaces;  ///< of vertices, those after the mesh's
     std::vector<Triangle> triangles, next;
-    std::unordered_map<std::uint64_t, std::uint32_t> halved, vertices;
+    EdgeTable halved, vertices;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     std::vector<Cut> cuts;
     std::vector<EdgeProbe> asked;

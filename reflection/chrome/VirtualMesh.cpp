@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <glm/geometric.hpp>
 #include <map>
 #include <utility>
 
@@ -167,6 +168,16 @@ void VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye, std::sp
         each(open, threads, [](const Turn& t) { t.edges->cutTriangles(); });
         spent += budget - left;
     }
+}
+
+float VirtualMesh::away() const {
+    // Prime, so that corners of triangles take turns.
+    constexpr std::size_t step = 7;
+    float sum = 0;
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < edges.drawn.size(); k += step, ++n)
+        sum += glm::length(edges.image[edges.drawn[k]].fromEye);
+    return n > 0 ? sum / static_cast<float>(n) : 0;
 }
 
 VirtualCounts VirtualMesh::update(const ReflectorMap& map, const glm::dvec3& eye,

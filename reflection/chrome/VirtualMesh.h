@@ -56,6 +56,9 @@ class VirtualMesh {
     /// vertex (normal, colour) is mixed from its ends'.
     std::span<const MiddleVertex> middles() const { return edges.added; }
     std::span<const std::uint32_t> indices() const { return edges.drawn; }
+    /// Mean distance from the eye of what is drawn, by a sample of its corners: what hides others is best
+    /// drawn first. 0 where nothing is.
+    float away() const;
 
   private:
     bool asOne(const ReflectorMap& map, const VirtualMeshOptions& options) const {

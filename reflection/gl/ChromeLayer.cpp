@@ -2,7 +2,9 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace reflection::gl {
 
@@ -59,13 +61,47 @@ ChromeMesh::ChromeMesh(std::vector<int> attributes) {
     }
 }
 
-void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertices) {
+void ChromeMesh::mix(const VirtualMesh& mesh, std::span<const float> ofVertices) {
     all_.assign(ofVertices.begin(), ofVertices.end());
     for (const MiddleVertex& m : mesh.middles())
         for (std::size_t k = 0; k < stride_; ++k) {
             const float a = all_[m.a * stride_ + k], b = all_[m.b * stride_ + k];
             all_.push_back(a + m.share * (b - a));
         }
+}
+
+void ChromeMesh::upload(std::span<const Part> parts) {
+    std::vector<std::pair<float, const Part*>> order;
+    for (const Part& part : parts)
+        if (!part.mesh->indices().empty()) order.emplace_back(part.mesh->away(), &part);
+    std::ranges::stable_sort(order, {}, &std::pair<float, const Part*>::first);
+    joined_.clear();
+    vertices_.clear();
+    corners_.clear();
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    for (const auto& [away, part] : order) {
+        mix(*part->mesh, part->ofVertices);
+        const std::span<const VirtualVertex> vertices = part->mesh->vertices();
+        numbers_.assign(vertices.size(), none);
+        for (const std::uint32_t v : part->mesh->indices()) {
+            std::uint32_t& number = numbers_[v];
+            if (number == none) {
+                number = static_cast<std::uint32_t>(vertices_.size());
+                vertices_.push_back(vertices[v]);
+                const float* values = all_.data() + v * stride_;
+                joined_.insert(joined_.end(), values, values + stride_);
+            }
+            corners_.push_back(number);
+        }
+    }
+    places_.replace(std::span<const VirtualVertex>(vertices_));
+    values_.replace(std::span<const float>(joined_));
+    indices_.replace(std::span<const std::uint32_t>(corners_));
+    count_ = static_cast<GLsizei>(corners_.size());
+}
+
+void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertices) {
+    mix(mesh, ofVertices);
     places_.replace(mesh.vertices());
     values_.replace(std::span<const float>(all_));
     indices_.replace(mesh.indices());
