@@ -268,6 +268,10 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
     materials.bind();
     const Impl::Seen seenAs{pass.eye, pass.clipFromRelative, size, around.lighting};
     const std::vector<bool> anew = my.outdated(shown, layers, seenAs, around);
+    // What is handed over is what shows in this view.
+    if (!(seenAs == my.seenBefore))
+        for (const ChromeShown& s : shown)
+            for (ChromeObject* o : s.objects) o->stale = true;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const Impl::Layer& l = layers[i];
         // Of what is not seen now the image may have moved: it is handed over later.
@@ -296,7 +300,7 @@ ChromeCounts CityChrome::draw(const ChromePlan& plan, std::uint32_t view, const 
         for (const std::size_t k : order) {
             ChromeObject& o = *shown[i].objects[k];
             if (!o.drawn) o.drawn = std::make_unique<gl::ChromeMesh>(o.source->attributes);
-            if (o.stale) o.drawn->upload(*o.mesh, o.source->values);
+            if (o.stale) o.drawn->upload(*o.mesh, o.source->values, {clipFromVirtual, size, l.pixels});
             o.stale = false;
             my.drawThing(l.things[k], clipFromVirtual, glm::mat3(turn),
                          glm::vec4(middle, static_cast<float>(job.reach)), pass.eye, around);

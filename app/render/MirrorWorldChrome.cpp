@@ -226,7 +226,7 @@ void MirrorWorldChrome::Impl::drawPiece(const Image& image, std::size_t curved, 
     } else {
         std::vector<gl::ChromeMesh::Part> parts;
         for (const Object& o : p.objects) parts.push_back({&o.mesh, objects[o.index].values});
-        p.drawn->upload(parts);
+        p.drawn->upload(parts, {clip, image.size, pixels});
         p.drawn->draw();
     }
     if (!tree.nodes.empty()) drawBodies(image, curved, piece, how, clip, environments, frame);

@@ -70,7 +70,7 @@ void ChromeMesh::mix(const VirtualMesh& mesh, std::span<const float> ofVertices)
         }
 }
 
-void ChromeMesh::upload(std::span<const Part> parts) {
+void ChromeMesh::upload(std::span<const Part> parts, const VirtualWindow& window) {
     std::vector<std::pair<float, const Part*>> order;
     for (const Part& part : parts)
         if (!part.mesh->indices().empty()) order.emplace_back(part.mesh->away(), &part);
@@ -80,10 +80,12 @@ void ChromeMesh::upload(std::span<const Part> parts) {
     corners_.clear();
     constexpr std::uint32_t none = ~std::uint32_t{0};
     for (const auto& [away, part] : order) {
-        mix(*part->mesh, part->ofVertices);
         const std::span<const VirtualVertex> vertices = part->mesh->vertices();
+        showing(vertices, part->mesh->indices(), window, shown_);
+        if (shown_.empty()) continue;
+        mix(*part->mesh, part->ofVertices);
         numbers_.assign(vertices.size(), none);
-        for (const std::uint32_t v : part->mesh->indices()) {
+        for (const std::uint32_t v : shown_) {
             std::uint32_t& number = numbers_[v];
             if (number == none) {
                 number = static_cast<std::uint32_t>(vertices_.size());
@@ -106,6 +108,12 @@ void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertic
     values_.replace(std::span<const float>(all_));
     indices_.replace(mesh.indices());
     count_ = static_cast<GLsizei>(mesh.indices().size());
+}
+
+void ChromeMesh::upload(const VirtualMesh& mesh, std::span<const float> ofVertices,
+                        const VirtualWindow& window) {
+    const Part part{&mesh, ofVertices};
+    upload(std::span(&part, 1), window);
 }
 
 void ChromeMesh::draw() const {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "reflection/chrome/ShownTriangles.h"
 #include "reflection/chrome/VirtualMesh.h"
 #include "reflection/gl/Buffer.h"
 #include "reflection/gl/Framebuffer.h"
@@ -50,13 +51,15 @@ class ChromeMesh {
     /// Takes an updated mesh over. `ofVertices`: the host's floats for the mesh's own vertices; those of
     /// middles are mixed from their ends'.
     void upload(const VirtualMesh& mesh, std::span<const float> ofVertices);
+    /// The same without triangles that draw nothing in this window.
+    void upload(const VirtualMesh& mesh, std::span<const float> ofVertices, const VirtualWindow& window);
     struct Part {
         const VirtualMesh* mesh = nullptr;
         std::span<const float> ofVertices = {};
     };
     /// Several, drawn at once, the nearest first: without what no triangle of theirs names. A draw of its own
     /// for each costs a software rasteriser more than their triangles do.
-    void upload(std::span<const Part> parts);
+    void upload(std::span<const Part> parts, const VirtualWindow& window);
     /// Draws with the program in use.
     void draw() const;
 
@@ -69,7 +72,7 @@ class ChromeMesh {
     VertexArray array_ = VertexArray::create();
     std::vector<float> all_, joined_;
     std::vector<VirtualVertex> vertices_;
-    std::vector<std::uint32_t> numbers_, corners_;
+    std::vector<std::uint32_t> numbers_, corners_, shown_;
     GLsizei count_ = 0;
 };
 
