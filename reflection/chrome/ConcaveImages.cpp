@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "reflection/chrome/ConcaveSearch.h"
 #include "reflection/chrome/ThoroughSearch.h"
 
 namespace reflection {
@@ -18,6 +19,9 @@ constexpr double samePoint = 2e-5;
 /// An image is taken to go on in a neighbour's that lies nearer than this share of its distance to its own
 /// place's next image, and than this many radii; else it is followed there.
 constexpr double clearShare = 0.3, clearDistance = 0.1;
+
+/// So many places are searched together: as many as fill searchConcave's lanes, and leave all cores some.
+constexpr std::size_t searchesATime = 64;
 
 std::uint32_t nearestOf(const PlaceImage& image, std::span<const PlaceImage> among) {
     std::uint32_t best = PlaceImage::none;
@@ -71,6 +75,23 @@ std::vector<PlaceImage> ConcaveImages::everywhere(const glm::dvec3& place) const
     return images;
 }
 
+void ConcaveImages::everywhere(std::span<const glm::dvec3> places, std::span<const std::uint32_t> at,
+                               std::span<std::vector<PlaceImage>> images) const {
+    std::vector<glm::dvec3> moved;
+    for (const std::uint32_t k : at) {
+        const bool finite = std::isfinite(places[k].x + places[k].y + places[k].z);
+        moved.push_back(finite ? map_.frame().toMap(places[k]) : mapEye_);
+    }
+    const ConcavePoints all = searchConcave(map_, mapEye_, moved, true, options_);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        if (!std::isfinite(places[at[k]].x + places[at[k]].y + places[at[k]].z)) continue;
+        for (const ReflectionPoint& r : all.of(k)) {
+            PlaceImage made;
+            if (image(places[at[k]], r.point, r.normal, made)) images[k].push_back(made);
+        }
+    }
+}
+
 std::size_t ConcaveImages::follow(const glm::dvec3& place, std::span<const PlaceImage> from,
                                   std::vector<PlaceImage>& into) const {
     if (from.empty() || !std::isfinite(place.x + place.y + place.z)) return 0;
@@ -116,8 +137,14 @@ std::vector<std::vector<PlaceImage>> ConcaveImages::ofMesh(std::span<const glm::
     std::vector<std::uint32_t> seeds;
     for (std::size_t k = 0; k < n; k += stride) seeds.push_back(static_cast<std::uint32_t>(k));
     searched_ += seeds.size();
-    tbb::parallel_for(std::size_t{0}, seeds.size(),
-                      [&](std::size_t s) { images[seeds[s]] = everywhere(places[seeds[s]]); });
+    std::vector<std::vector<PlaceImage>> all(seeds.size());
+    tbb::parallel_for(
+        std::size_t{0}, (seeds.size() + searchesATime - 1) / searchesATime, [&](std::size_t part) {
+            const std::size_t from = part * searchesATime;
+            const std::size_t count = std::min(searchesATime, seeds.size() - from);
+            everywhere(places, std::span(seeds).subspan(from, count), std::span(all).subspan(from, count));
+        });
+    for (std::size_t s = 0; s < seeds.size(); ++s) images[seeds[s]] = std::move(all[s]);
     for (const std::uint32_t s : seeds) reach(s);
     std::vector<std::uint32_t> spread(seeds);
     for (std::size_t next = 0;;) {

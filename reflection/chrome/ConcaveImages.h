@@ -42,6 +42,9 @@ class ConcaveImages {
     std::size_t searched() const { return searched_; }
 
   private:
+    /// The same of several, given by their places in a list; adds to `images`.
+    void everywhere(std::span<const glm::dvec3> places, std::span<const std::uint32_t> at,
+                    std::span<std::vector<PlaceImage>> images) const;
     bool image(const glm::dvec3& place, const glm::dvec3& point, const glm::dvec3& normal,
                PlaceImage& made) const;
 
