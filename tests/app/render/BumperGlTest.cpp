@@ -8,16 +8,15 @@
 #include "app/frame/ChromePlan.h"
 #include "app/frame/CloseScene.h"
 #include "app/frame/ReflectionEngine.h"
-#include "app/raytrace/RayTracer.h"
 #include "app/render/CloseMeshes.h"
 #include "app/render/Readback.h"
 #include "app/render/SceneRenderer.h"
 #include "city/model/CityHeightfield.h"
 #include "reflection/gl/BakeReferenceMaps.h"
 #include "reflection/gl/DebugOutput.h"
-#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/truth/ImageError.h"
 #include "tests/app/raytrace/MirrorWorld.h"
+#include "tests/app/render/TracedTruth.h"
 #include "tests/app/render/WritePng.h"
 #include "vehicles/models/Bodies.h"
 
@@ -85,15 +84,7 @@ class BumperGlTest : public testing::Test {
 
     /// What is true, and the saloon's chrome in it.
     void trace(Pixels& truth, std::vector<unsigned char>& mask) {
-        RayTracer rays(city_, models_);
-        rays.prepare(frame_);
-        renderer_->prepare(frame_);
-        rays.useSunMap(renderer_->sunMap());
-        if (reflection::softwareRenderer()) rays.useTextureFilter(TextureFilter::llvmpipe);
-        TraceOptions many;
-        many.samples = 16;
-        many.bounces = 2;
-        const TracedPicture traced = rays.render(view_, many);
+        const TracedPicture traced = test::tracedTruth(city_, models_, frame_, *renderer_, 2);
         truth = traced.display(frame_.lighting.exposure);
         mask.assign(traced.kind.size(), 0);
         for (std::size_t i = 0; i < mask.size(); ++i)

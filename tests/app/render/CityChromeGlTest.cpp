@@ -14,15 +14,14 @@
 #include "app/frame/CloseScene.h"
 #include "app/frame/ReflectionEngine.h"
 #include "app/frame/StandingReflectors.h"
-#include "app/raytrace/RayTracer.h"
 #include "app/render/Readback.h"
 #include "app/render/SceneRenderer.h"
 #include "city/terrain/Heightfield.h"
 #include "reflection/gl/DebugOutput.h"
 #include "reflection/gl/ScreenLight.h"
-#include "reflection/gl/SoftwareRenderer.h"
 #include "reflection/truth/ImageError.h"
 #include "tests/app/raytrace/MirrorWorld.h"
+#include "tests/app/render/TracedTruth.h"
 #include "tests/app/render/WritePng.h"
 
 namespace app {
@@ -45,16 +44,22 @@ class CityChromeGlTest : public testing::Test {
         test::addBox(post.levels.back().mesh, {-0.1f, -0.1f, 0}, {0.1f, 0.1f, 1.2f}, 1);
         city_.prototypes.push_back(post);
         city_.placements.emplace_back().worldFromPrototype[3] = glm::vec4(1.2f, -1.2f, 0, 1);
-        models_ = {test::boxCar(), standingModels(city_).front()};
+        // A car of two metres' width passes half a metre from the sphere.
+        build(lookAt({3.6, -2.2, 1.7}, {0, 0, 1.2}, glm::radians(40.0), size),
+              test::poseAt(1, 0, {0.5, 2.5, 0}, 0.1));
+    }
+    /// What draws the city as it stands, a car in it, seen so.
+    void build(const View& view, const vehicles::VehiclePose& car) {
+        models_ = {test::boxCar()};
+        for (const vehicles::VehicleModel& model : standingModels(city_)) models_.push_back(model);
         RenderOptions options;
         options.antialiasing = Antialiasing::none;
         renderer_ = std::make_unique<SceneRenderer>(city_, models_, options);
         close_ = std::make_unique<CloseScene>(city_, models_);
         renderer_->setCloseScene(close_.get());
-        view_ = lookAt({3.6, -2.2, 1.7}, {0, 0, 1.2}, glm::radians(40.0), size);
+        view_ = view;
         frame_.vehicles = standingPoses(city_, 1);
-        // A car of two metres' width passes half a metre from the sphere.
-        frame_.vehicles.push_back(test::poseAt(1, 0, {0.5, 2.5, 0}, 0.1));
+        frame_.vehicles.push_back(car);
         frame_.vehicles.back().paint = {0.5f, 0.05f, 0.04f};
         frame_.lighting = lightingAt(15, 50);
         frame_.views = {view_};
@@ -118,15 +123,7 @@ void CityChromeGlTest::compare(const std::string& name, double& ours, double& th
     ASSERT_EQ(chrome.jobs.size(), 1u);
     ASSERT_EQ(chrome.jobs[0].close.size(), 1u);
     ASSERT_EQ(chrome.jobs[0].share, 1);
-    RayTracer rays(city_, models_);
-    rays.prepare(frame_);
-    renderer_->prepare(frame_);
-    rays.useSunMap(renderer_->sunMap());
-    if (reflection::softwareRenderer()) rays.useTextureFilter(TextureFilter::llvmpipe);
-    TraceOptions many;
-    many.samples = 16;
-    many.bounces = 2;
-    const TracedPicture traced = rays.render(view_, many);
+    const TracedPicture traced = test::tracedTruth(city_, models_, frame_, *renderer_, 2);
     std::vector<unsigned char> mask(traced.kind.size());
     for (std::size_t i = 0; i < mask.size(); ++i)
         mask[i] = traced.kind[i] == SeenKind::vehicle && traced.vehicle[i] >= firstStandingId ? 1 : 0;
@@ -263,25 +260,8 @@ class CityChromeBouncesGlTest : public CityChromeGlTest {
         post({1.4f, 1.3f, 0}, 0.7f, 0.15f, 1);
         post({-1.5f, 2.2f, 0}, 2.2f, 0.2f, 1);
         post({1.8f, 3.4f, 0}, 1.6f, 0.2f, 1);
-        const std::vector<vehicles::VehicleModel> standing = standingModels(city_);
-        models_ = {test::boxCar()};
-        models_.insert(models_.end(), standing.begin(), standing.end());
-        RenderOptions options;
-        options.antialiasing = Antialiasing::none;
-        renderer_ = std::make_unique<SceneRenderer>(city_, models_, options);
-        close_ = std::make_unique<CloseScene>(city_, models_);
-        renderer_->setCloseScene(close_.get());
-        view_ = lookAt({3.2, -0.6, 1.7}, {0, 0.3, 1.2}, glm::radians(40.0), size);
-        frame_.vehicles = standingPoses(city_, 1);
-        frame_.vehicles.push_back(test::poseAt(1, 0, {1.2, 5.2, 0}, 0.1));
-        frame_.vehicles.back().paint = {0.5f, 0.05f, 0.04f};
-        frame_.lighting = lightingAt(15, 50);
-        frame_.views = {view_};
-        city::Heightfield field(8, 8, 50, {-200, -200});
-        tracer_ = std::make_unique<reflection::GridTracer>(field);
-        ReflectionSettings settings;
-        settings.method = ReflectionMethod::rerender;
-        engine_ = std::make_unique<ReflectionEngine>(*tracer_, maps_, models_, settings);
+        build(lookAt({3.2, -0.6, 1.7}, {0, 0.3, 1.2}, glm::radians(40.0), size),
+              test::poseAt(1, 0, {1.2, 5.2, 0}, 0.1));
     }
 
     ChromePlan planned() const {
@@ -323,15 +303,8 @@ class CityChromeBouncesGlTest : public CityChromeGlTest {
 TEST_F(CityChromeBouncesGlTest, aBallSeenInAnotherMirrorsWhatIsCloseToIt) {
     const ChromePlan chrome = planned();
     ASSERT_EQ(chrome.jobs.size(), 2u);
-    RayTracer rays(city_, models_);
-    rays.prepare(frame_);
-    renderer_->prepare(frame_);
-    rays.useSunMap(renderer_->sunMap());
-    if (reflection::softwareRenderer()) rays.useTextureFilter(TextureFilter::llvmpipe);
-    TraceOptions many;
-    many.samples = 16;
-    many.bounces = 3;
-    const std::vector<glm::vec3> truth = rays.render(view_, many).display(frame_.lighting.exposure);
+    const std::vector<glm::vec3> truth =
+        test::tracedTruth(city_, models_, frame_, *renderer_, 3).display(frame_.lighting.exposure);
     const std::vector<unsigned char> mask = metTwice();
     ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 500);
     renderer_->prepare(frame_);
