@@ -195,8 +195,8 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
         // In hollow pieces every image is drawn, and measured as such; one round of them is enough.
         const bool hollow = part.concave() && !options.vertex.published;
         if (hollow) {
-            const HollowTruth truth = hollowTruth(part, eye, place);
             HollowImages full;
+            HollowTruth truth;
             for (std::size_t s = 0; s < shares; ++s) {
                 const Stopwatch watch;
                 HollowImages some = hollowImages(part.reflector.pieces.front().built.map, eye, part.close,
@@ -205,7 +205,10 @@ MirrorRows chromeShares(const ChromeStage& stage, const ChromeBenchOptions& opti
                 of.ms.push_back(watch.elapsed());
                 of.counts.searched = some.searched;
                 for (const CloseMesh& m : part.close) of.counts.vertices += m.positions.size();
-                if (s == 0) full = some;
+                if (s == 0) {
+                    full = some;
+                    truth = hollowTruth(part, eye, place, full);
+                }
                 HollowErrors errors = hollowErrors(full, some, truth, place);
                 of.fromFull = std::move(errors.fromFull);
                 of.fromTruth = std::move(errors.fromTruth);

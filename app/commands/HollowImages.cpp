@@ -25,13 +25,18 @@ HollowImages hollowImages(const reflection::ReflectorMap& map, const glm::dvec3&
     return out;
 }
 
-HollowTruth hollowTruth(const StagedChrome& part, const glm::dvec3& eye, const PixelPlace& place) {
+HollowTruth hollowTruth(const StagedChrome& part, const glm::dvec3& eye, const PixelPlace& place,
+                        const HollowImages& found) {
     HollowTruth out;
+    const reflection::MapFrame& frame = part.reflector.pieces.front().built.map.frame();
     const TrueReflection truth(*part.mirror);
     for (const CloseMesh& m : part.close) {
         std::vector<std::vector<glm::dvec2>>& seen = out.emplace_back(m.positions.size());
         tbb::parallel_for(std::size_t{0}, m.positions.size(), [&](std::size_t k) {
-            for (const TruePoint& t : truth.all(eye, glm::dvec3(m.positions[k])))
+            std::vector<glm::dvec3> besides;
+            for (const PlaceImage& i : found.meshes[out.size() - 1][k])
+                if (i.onPart) besides.push_back(frame.fromMap(i.point));
+            for (const TruePoint& t : truth.all(eye, glm::dvec3(m.positions[k]), besides))
                 seen[k].push_back(place.of(t.position - eye));
         });
     }

@@ -30,9 +30,12 @@ struct HollowErrors {
     std::size_t lost = 0;                     ///< images of all searches that some do not have
     std::size_t untrue = 0;                   ///< images where no ray meets the surface
 };
-/// Where rays see each vertex of each mesh: any number of pixels. On all cores.
+/// Where rays see each vertex of each mesh: any number of pixels. On all cores. `found`: images whose points
+/// are walked from besides the surface's own corners, between which two points may hide
+/// (TrueReflection::all).
 using HollowTruth = std::vector<std::vector<std::vector<glm::dvec2>>>;
-HollowTruth hollowTruth(const StagedChrome& part, const glm::dvec3& eye, const PixelPlace& place);
+HollowTruth hollowTruth(const StagedChrome& part, const glm::dvec3& eye, const PixelPlace& place,
+                        const HollowImages& found);
 HollowErrors hollowErrors(const HollowImages& full, const HollowImages& some, const HollowTruth& truth,
                           const PixelPlace& place);
 

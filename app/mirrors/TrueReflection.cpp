@@ -108,23 +108,28 @@ bool TrueReflection::walk(const glm::dvec3& eye, const glm::dvec3& vertex, const
     return true;
 }
 
-std::vector<TruePoint> TrueReflection::all(const glm::dvec3& eye, const glm::dvec3& vertex) const {
+std::vector<TruePoint> TrueReflection::all(const glm::dvec3& eye, const glm::dvec3& vertex,
+                                           std::span<const glm::dvec3> besides) const {
     std::vector<double> cosines;
     cosines.reserve(corners_.size());
     for (const Corner& c : corners_)
         cosines.push_back(glm::dot(unit(unit(eye - c.position) + unit(vertex - c.position)), c.normal));
     std::vector<TruePoint> found;
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-        if (!(cosines[k] > 0)) continue;
-        const bool best = std::all_of(corners_[k].neighbours.begin(), corners_[k].neighbours.end(),
-                                      [&](std::uint32_t other) { return cosines[other] <= cosines[k]; });
+    const auto walkFrom = [&](const glm::dvec3& from) {
         TruePoint end;
-        if (!best || !walk(eye, vertex, corners_[k].position, end)) continue;
+        if (!walk(eye, vertex, from, end)) return;
         const bool known = std::any_of(found.begin(), found.end(), [&](const TruePoint& p) {
             return glm::distance(p.position, end.position) < same * mirror_.reflector.radius;
         });
         if (!known) found.push_back(end);
+    };
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+        if (!(cosines[k] > 0)) continue;
+        const bool best = std::all_of(corners_[k].neighbours.begin(), corners_[k].neighbours.end(),
+                                      [&](std::uint32_t other) { return cosines[other] <= cosines[k]; });
+        if (best) walkFrom(corners_[k].position);
     }
+    for (const glm::dvec3& from : besides) walkFrom(from);
     std::sort(found.begin(), found.end(),
               [](const TruePoint& a, const TruePoint& b) { return a.path < b.path; });
     return found;

@@ -32,7 +32,7 @@ constexpr int wideBox = 4;
 /// Pixels that a mesh covers at most.
 reflection::PixelRect pixelsOfMesh(const glm::mat4& clipFromMesh, const glm::ivec2& size,
                                    const city::Mesh& mesh) {
-    // As far before the eye as the projection's nearest: what crosses it is taken from there on.
+    // Well before the nearest plane of any projection here: what crosses it is taken from there on.
     constexpr float nearest = 1e-3f;
     std::vector<glm::vec4> clip;
     clip.reserve(mesh.vertices.size());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -70,6 +71,38 @@ TEST(TrueReflection, PathsOfABowlAreStationaryAndSorted) {
         }
     }
     EXPECT_GT(several, 0);
+}
+
+TEST(TrueReflection, OfTwoPointsBetweenTheSameCornersAWalkFromBesidesFindsTheOther) {
+    const MirrorWorld::Curved coarse = bowl();
+    MirrorWorld::Curved fine = coarse;
+    Lathe lathe;
+    lathe.profile = {{1, 0.7}, {0.8, 0.3}, {0.4, 0.06}, {0, 0}};
+    lathe.steps = 24;
+    lathe.slices = 192;
+    fine.mesh = LatheSurface(lathe).mesh(glm::vec3(1), glm::vec3(1));
+    const TrueReflection truth(coarse), finer(fine);
+    const glm::dvec3 eye(0.9, -1.2, 1.8);
+    int more = 0;
+    for (int k = 0; k < 400; ++k) {
+        const glm::dvec3 vertex(0.0041 * k - 0.8, 0.5 - 0.0023 * k, 0.2 + 0.0052 * k);
+        const std::vector<TruePoint> alone = truth.all(eye, vertex), known = finer.all(eye, vertex);
+        std::vector<glm::dvec3> besides;
+        for (const TruePoint& p : known) besides.push_back(p.position);
+        const std::vector<TruePoint> both = truth.all(eye, vertex, besides);
+        more += both.size() > alone.size();
+        EXPECT_GE(both.size(), alone.size());
+        for (const TruePoint& p : known) {
+            double nearest = INFINITY;
+            for (const TruePoint& q : both)
+                nearest = std::min(nearest, glm::distance(p.position, q.position));
+            EXPECT_LT(nearest, 1e-5) << k;
+        }
+        for (const TruePoint& p : both) EXPECT_LT(p.residual, 1e-8);
+    }
+    EXPECT_GT(more, 0);
+    EXPECT_EQ(truth.all(eye, {0, 0, 1}, std::vector{glm::dvec3(NAN, 0, 0)}).size(),
+              truth.all(eye, {0, 0, 1}).size());
 }
 
 }  // namespace
